@@ -4,7 +4,7 @@
 
 pub mod base;
 pub mod derived;
-pub mod described;
+mod described;
 pub mod description;
 pub mod doubts;
 pub mod gauge;
@@ -295,15 +295,15 @@ impl Structure {
     }
 
     /// This structure, of which the numbers of `description` were given.
-    fn described_as(self, description: &Description) -> Structure {
-        Structure(self.0, Provenance { description: Some(Arc::new(description.clone())), ..self.1 })
+    fn described_as(self, description: Description) -> Structure {
+        Structure(self.0, Provenance { description: Some(Arc::new(description)), ..self.1 })
     }
 
     /// This structure with what `change` makes of the numbers that were given.
     fn redescribed(self, change: impl FnOnce(&mut Description)) -> Structure {
         let Some(mut description) = self.1.description.as_deref().cloned() else { return self };
         change(&mut description);
-        self.described_as(&description)
+        self.described_as(description)
     }
 
     /// The numbers that it was made of; none of a structure of a body and modes.
@@ -515,7 +515,7 @@ impl From<OneMass> for Structure {
         let body = Body::of(one.parameters(), Some(r), [m, m * H, m * H * H]);
         let floor = Floor { mass: m, height: H, shape: Modes::new(&[1.0]) };
         let description = Description { parameters: *one.parameters(), many: None, ground: None };
-        Structure::of(body, &[one.mode], &[floor], Some(one)).described_as(&description)
+        Structure::of(body, &[one.mode], &[floor], Some(one)).described_as(description)
     }
 }
 

@@ -7,6 +7,7 @@ use rocking::digits::{short, significant, with_unit};
 use rocking::estimates::restoring::{FlagPoint, flag};
 use rocking::run::validity;
 use rocking::structure::derived::{DERIVED, Derived, OF_MODE};
+use rocking::structure::description::Description;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -14,9 +15,8 @@ use std::fmt::{self, Write};
 
 /// The parameters of one mass.
 pub fn given(structure: &Structure) -> Vec<NamedValue> {
-    let parameters = Some(structure.parameters()).filter(|_| structure.is_one_mass());
-    let each = parameters.iter().flat_map(|parameters| PARAMETERS.iter().map(move |of| (of, (of.get)(parameters))));
-    let given = each.filter(|(_, value)| !value.is_nan()); // r on ground that gives
+    let given =
+        structure.description().filter(|of| of.many.is_none()).into_iter().flat_map(Description::own_parameters);
     given.map(|(of, value)| NamedValue::new(of.name, value, of.unit, "", of.description)).collect()
 }
 

@@ -5,7 +5,7 @@ use rocking::digits::short;
 use rocking::structure::derived::Derived;
 use rocking::structure::description::{Damping, Described, Description};
 use rocking::structure::natural_quantities::{NATURAL, Natural, Numbers};
-use rocking::structure::parameters::{OF_ONE_MASS, PARAMETERS, Parameters};
+use rocking::structure::parameters::Parameters;
 use rocking::{OneMass, Quantity, Structure};
 use serde::{Deserialize, Deserializer};
 use std::fmt::Write;
@@ -53,10 +53,9 @@ pub fn names_of_many() -> Vec<String> {
 /// The tables of the file of `structure`, from which [`of_table`] makes it again to the same bits.
 pub fn table(structure: &Structure) -> anyhow::Result<Table> {
     let of_body = "the structure was made of a body and modes: make it of numbers that a file has";
-    let Description { parameters, many, ground } = structure.description().context(of_body)?;
-    let numbers = PARAMETERS.iter().map(|of| (of.name, (of.get)(parameters)));
-    let numbers = numbers.filter(|(name, value)| !(value.is_nan() || many.is_some() && OF_ONE_MASS.contains(name)));
-    let numbers = Table::from_iter(numbers.map(|(name, value)| (name.to_owned(), value.into())));
+    let description @ Description { many, ground, .. } = structure.description().context(of_body)?;
+    let numbers = description.own_parameters().map(|(of, value)| (of.name.to_owned(), value.into()));
+    let numbers = Table::from_iter(numbers);
     let mut table = match many {
         None => numbers,
         Some(many) => {
@@ -103,8 +102,7 @@ pub fn write(structure: &Structure) -> anyhow::Result<String> {
     } else {
         "# A line that begins with # may replace the line above it. You may leave out what has a default.\n"
     };
-    let of = structure.description().map(|of| &of.parameters);
-    of.into_iter().try_for_each(|of| parameters_of(&mut out, of, structure.one(), is_many))?;
+    structure.description().into_iter().try_for_each(|of| parameters_of(&mut out, of, structure.one()))?;
     let is_table = |value: &Value| value.is_table() || value.is_array();
     table.retain(|key, value| key != "base" && is_table(value));
     if !is_many && table.is_empty() {
@@ -118,18 +116,9 @@ pub fn write(structure: &Structure) -> anyhow::Result<String> {
     Ok(out)
 }
 
-/// A line for each parameter that `parameters` have, with its unit, its range and what may be given in its place.
-fn parameters_of(
-    out: &mut String,
-    parameters: &Parameters,
-    one: Option<&OneMass>,
-    is_base: bool,
-) -> anyhow::Result<()> {
-    for &Quantity { name, unit, description, min, max, get, .. } in PARAMETERS {
-        let value = get(parameters);
-        if value.is_nan() || is_base && OF_ONE_MASS.contains(&name) {
-            continue;
-        }
+/// A line for each parameter of the description `of` a structure, with its unit, its range and what may be given in its place.
+fn parameters_of(out: &mut String, of: &Description, one: Option<&OneMass>) -> anyhow::Result<()> {
+    for (&Quantity { name, unit, description, min, max, get, .. }, value) in of.own_parameters() {
         let of = if unit == "1" { String::new() } else { format!(" {unit},") };
         let default = Some(get(&Parameters::DEFAULTS)).filter(|default| !default.is_nan());
         let default = default.map_or(String::new(), |default| format!(", default {}", short(default)));

@@ -126,18 +126,21 @@ pub(super) const ZETA: Quantity<f64> =
     Quantity::limit("zeta", "1", [0.0, MAX_DAMPING], "damping ratio in full contact");
 
 impl Description {
+    /// The parameters that it has: of many masses those of the base, and r unless momentum gives it.
+    pub fn own_parameters(&self) -> impl Iterator<Item = (&'static Quantity<Parameters>, f64)> + use<> {
+        let (parameters, is_many) = (self.parameters, self.many.is_some());
+        let own = PARAMETERS.iter().filter(move |of| !(is_many && OF_ONE_MASS.contains(&of.name)));
+        own.map(move |of| (of, (of.get)(&parameters))).filter(|(_, value)| !value.is_nan())
+    }
+
     /// Shows each number that can have another value, and takes the value that is left there. The storeys' number, the modes that another
     /// program found, and lists of contact points stay as they are.
     fn each(&mut self, mut see: impl FnMut(DescribedNumber, &mut f64)) {
-        let Description { parameters, many, ground } = self;
-        let is_many = many.is_some();
-        for of in PARAMETERS.iter().filter(|of| !(is_many && OF_ONE_MASS.contains(&of.name))) {
-            let mut value = (of.get)(parameters);
-            if !value.is_nan() {
-                see(DescribedNumber::new(of, value), &mut value);
-                (of.set)(parameters, value);
-            }
+        for (of, mut value) in self.own_parameters() {
+            see(DescribedNumber::new(of, value), &mut value);
+            (of.set)(&mut self.parameters, value);
         }
+        let Description { many, ground, .. } = self;
         if let Some(ManyMasses { zeta, storeys, .. }) = many.as_mut().filter(|many| !many.storeys.is_empty()) {
             for (i, Storey { m, h, k }) in (1..).zip(storeys) {
                 let mut see_of = |of: DescribedNumber, value: &mut f64| {

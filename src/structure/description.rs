@@ -12,8 +12,7 @@ pub use crate::structure::described::{
 };
 use crate::structure::described::{DampingOfFile, STOREY, ZETA};
 use crate::structure::ground::Ground;
-use crate::structure::mode::OF_FLOOR;
-use crate::structure::mode::{MOST_MODES, Modes};
+use crate::structure::mode::{MOST_MODES, Modes, OF_FLOOR};
 use crate::structure::natural_quantities::{self, Numbers};
 use crate::structure::parameters::MAX_SLENDERNESS;
 use crate::structure::quantity::{Quantity, Refused, Units, ensure, ensure_in};
@@ -155,7 +154,7 @@ impl Description {
             let one = Structure::new(Parameters { r, ..self.parameters })?;
             let body = Body { r: None, ..*one.body() };
             let one = if by_momentum { Structure::of_body(body, one.modes(), one.floors())? } else { one };
-            return one.described_as(self).on(&self.ground);
+            return Ok(one.on(&self.ground)?.described_as(self.clone()));
         };
         let ManyMasses { zeta, storeys, p_delta, floors, K, modes, total, keep } = many;
         let base = &self.parameters;
@@ -175,13 +174,14 @@ impl Description {
                 Err(Refused::by(format!("give the structure in one way: {ways}; not {given}")))
             }
         }?;
-        let whole = whole.described_as(self).on(&self.ground)?;
-        let (Some(count), modes) = (*keep, whole.modes().len()) else { return Ok(whole) };
+        let whole = whole.on(&self.ground)?;
+        let described = |whole: Structure| whole.described_as(self.clone());
+        let (Some(count), modes) = (*keep, whole.modes().len()) else { return Ok(described(whole)) };
         ensure((1..=modes as i64).contains(&count), || {
             let instead = if count == 0 { ", or use detail = rigid" } else { "" };
             format!("keep = {count} is out of range: keep 1 to {modes} modes{instead}")
         })?;
-        whole.keeping(count as usize)
+        whole.keeping(count as usize).map(described)
     }
 }
 
