@@ -38,10 +38,9 @@ use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraints, levers, restraints};
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
-use crate::structure::ground::FOOTING;
 use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
-use crate::{Output, Phase, State, Structure};
+use crate::{Foundation, Output, Phase, State, Structure};
 use motion::{Motion, Work};
 use phases::Rules;
 use piece::{LeapRoom, Piece, Watch};
@@ -251,7 +250,7 @@ impl Engine<Modes> {
         // coordinates of modes have no limits, but are numbers
         let [u, u_dot] = [&state.u, &state.u_dot].map(|numbers| 0.0 * numbers.total());
         let phase = State { u, u_dot, theta: state.theta, theta_dot: state.theta_dot }.initial_phase()?;
-        let more = frame.foundation().map_or(0, |_| FOOTING);
+        let more = frame.foundation().map_or(0, Foundation::coordinates);
         let level = settings.level(&MANY, frame, state.theta)?;
         let (State { u, u_dot, .. }, modes) = (state, level.structure().modes().len());
         for numbers in [u, u_dot] {
@@ -342,7 +341,7 @@ impl<Q: Coordinates> Engine<Q> {
     pub fn outputs(&self, load: Load<Q>) -> impl Fn(Output) -> f64 {
         // a sample would copy the motion
         let x = shown::<Q>(&*self.level, self.motion.phase.in_motion(self.structure()), &self.motion.under(load));
-        move |output| output.of(&x)
+        move |output| output.added_up(&self.motion.dissipators).unwrap_or_else(|| output.of(&x))
     }
 
     /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
@@ -550,10 +549,8 @@ impl<Q: Coordinates> Rates<'_, Q> {
     /// The rate of `output`.
     #[inline(never)]
     pub fn of(&self, output: Output) -> f64 {
-        let Rates { x, second: Second { u_ddot, theta_ddot }, is_over } = *self;
-        let lift = Q::foundation(x.structure).map(|ground| u_ddot.footing(ground).y);
-        let x = Instant { theta_ddot, a_v: lift.map_or(x.a_v, |lift| x.a_v + lift), ..x };
-        if is_over { 0.0 } else { output.of(&x).rate }
+        let Rates { x, ref second, is_over } = *self;
+        if is_over { 0.0 } else { output.of(&x.accelerated(second)).rate }
     }
 
     /// The rates of the reactions.
@@ -726,7 +723,8 @@ where
                 return Ok(None);
             }
             let (side, contact) = (motion.side(), motion.phase.contact());
-            let mut step = Step { level, side, contact, start: &begin, arc: self.arc, reach: self.arc.reach };
+            let mut step =
+                Step { level, side, contact, start: &begin, arc: self.arc, reach: self.arc.reach, is_cut: false };
             let closed = first(watched, &mut step);
             let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
             self.arc.reach = reach;
@@ -780,7 +778,7 @@ pub(crate) fn first<Q: Coordinates>(watched: &Rules<Q>, step: &mut Step<Q>) -> O
     for (place, guard) in watched.guards.iter().enumerate() {
         let (crossing, branch) = guard.first(step);
         if crossing != Crossing::None {
-            step.reach = crossing.sigma();
+            (step.reach, step.is_cut) = (crossing.sigma(), true);
             closed = matches!(crossing, Crossing::At(_)).then_some(Closed { guard: place as u8, branch });
         }
     }

@@ -50,7 +50,7 @@ pub use mechanics::load::{LinearLoad, Load, Ramp};
 pub use mechanics::outputs::Output;
 pub use mechanics::reactions::{Impulse, Reactions};
 pub use mechanics::restraint::{Dissipators, Restraint, Restraints};
-pub use mechanics::state::{Phase, PressedPoints, Side, State};
+pub use mechanics::state::{Friction, Phase, PressedPoints, Side, State};
 pub use run::course::Run;
 pub use run::ground_motion::GroundMotion;
 pub use structure::Structure;

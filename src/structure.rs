@@ -19,7 +19,7 @@ use crate::series::bisection::last_where;
 use base::{Base, Body};
 use described::{Description, ManyMasses};
 use gauge::{Gauges, Reach, rest};
-use ground::{FOOTING, Foundation, Ground};
+use ground::{Foundation, Ground};
 use mode::{Floor, MOST_MODES, Mode, Modes, OF_FLOOR, Vibration};
 use one_mass::OneMass;
 use parameters::Parameters;
@@ -217,22 +217,31 @@ impl Structure {
         Structure(Arc::new(whole), self.1.clone())
     }
 
-    /// This structure on `ground` that gives, with at most 21 modes. The structure has no numbers of one mass any more: it is moved as
+    /// This structure on `ground` that gives, with at most 21 modes, or as many fewer as base and points have other
+    /// coordinates. The structure has no numbers of one mass any more: it is moved as
     /// structures of many masses are. Without `ground`, this structure.
     pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, Refused> {
         let Some(ground) = ground.into() else { return Ok(self.clone()) };
-        let kept = if self.modes().len() > MOST_MODES - FOOTING {
-            self.with_lowest(MOST_MODES - FOOTING)
-        } else {
-            self.clone()
+        let founded = |structure: &Structure| {
+            let foundation = Foundation::new(ground, structure.base(), structure.body(), structure.modes());
+            foundation.map_err(|error| error.of("ground"))
         };
-        let foundation = Foundation::new(ground, kept.base(), kept.body(), kept.modes());
-        let foundation = foundation.map_err(|error| error.of("ground"))?;
-        if foundation.is_none() {
-            return Ok(self.on_rigid_ground());
+        let Some(mut foundation) = founded(self)? else { return Ok(self.on_rigid_ground()) };
+        let (mut kept, beside) = (self.clone(), foundation.coordinates());
+        if self.modes().len() + beside > MOST_MODES {
+            let points = foundation.points.len();
+            let room = MOST_MODES.checked_sub(beside).filter(|room| *room > 0).ok_or_else(|| {
+                Refused::by(format!(
+                    "ground: n_points = {points} with fs or q_u leaves no room for a mode: give at most {} points",
+                    MOST_MODES + points - beside - 1
+                ))
+            })?;
+            kept = self.with_lowest(room);
+            foundation = founded(&kept)?.unwrap_or(foundation);
         }
-        let coordinates = [kept.modes(), &[Mode { mass: 1.0, ..Mode::default() }; FOOTING]].concat();
-        Ok(kept.standing(foundation, coordinates).redescribed(|description| description.ground = Some(ground.clone())))
+        let coordinates = [kept.modes(), &vec![Mode { mass: 1.0, ..Mode::default() }; beside]].concat();
+        let standing = kept.standing(Some(foundation), coordinates);
+        Ok(standing.redescribed(|description| description.ground = Some(ground.clone())))
     }
 
     /// This structure without ground that gives.

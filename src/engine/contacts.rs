@@ -1,4 +1,5 @@
-//! Guards of ground that gives: contact points that are touched and released, a tendon that goes slack, dissipators that yield.
+//! Guards of ground that gives: contact points that are touched, released, and yield, a tendon that goes slack, dissipators that yield, and
+//! friction.
 //!
 //! A pressed point is released when f returns to 0. A free point is touched when e < 0 and f > 0 hold together. Both depend on the state
 //! alone, so that nothing is remembered between steps. A gap that starts within rounding of its root is divided by time until its first
@@ -10,17 +11,18 @@ use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
 use crate::engine::step::{Branch, Step, see};
 use crate::engine::transition::TransitionKind;
-use crate::engine::yielding::square_integral;
+use crate::engine::yielding::{product_integral, square_integral};
 use crate::levels::level::Level;
+use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
-use crate::mechanics::contact::margins;
+use crate::mechanics::contact::{margins, reserves};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, dampers_on_ground, places};
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Series, ZERO, evaluate};
+use crate::series::taylor::{ORDERS, Series, ZERO, evaluate, product, sum_of_magnitudes, weighed_sum};
 use crate::series::terms::Terms;
 use crate::structure::ground::{ContactPoint, Footing};
-use crate::{Phase, Ties};
+use crate::{Foundation, Friction, Mode, Output, Phase, PressedPoints, Side, State, Structure, Ties};
 
 /// Part of its terms by which a gap may miss its root.
 const ROUNDING: f64 = 1e-13;
@@ -54,13 +56,25 @@ impl Rises {
     /// The height over the step at ξ plus τ times its rate, and what counts as 0 of it.
     #[inline]
     fn at(&self, xi: f64, tau: f64) -> (Series, f64) {
+        self.above(0.0, xi, tau)
+    }
+
+    /// The same with `more` height.
+    #[inline]
+    fn above(&self, more: f64, xi: f64, tau: f64) -> (Series, f64) {
         let Rises { y, sin, order, scale, .. } = self;
         let mut height = ZERO;
         for k in 0..=*order {
             height[k] = y[0][k] - xi * sin[0][k] + tau * (y[1][k] - xi * sin[1][k]);
         }
+        height[0] += more;
         let rates = y[1][0].abs() + (xi * sin[1][0]).abs();
-        (height, ROUNDING * (scale + (xi * sin[0][0]).abs() + tau * rates))
+        (height, ROUNDING * (scale + (xi * sin[0][0]).abs() + tau * rates + more.abs()))
+    }
+
+    /// The rate at which a `point` on its capacity settles that counts as 0, m/s.
+    fn rounding(&self, point: &ContactPoint) -> f64 {
+        if point.c > 0.0 { ROUNDING * (self.scale * point.k + point.q) / point.c } else { 0.0 }
     }
 
     /// The rate of the height at ξ, and what counts as 0 of it.
@@ -73,15 +87,21 @@ impl Rises {
     /// The gap of `sign` times a series, divided by time while its first coefficients are no more than `rounding`, as they would be
     /// over the longest step; none if all are.
     #[inline]
-    fn gap<'b>(&self, (series, rounding): &'b (Series, f64), sign: f64) -> Option<Gap<'b>> {
-        let (used, mut limit) = (&series[..=self.order], rounding / self.part);
-        let is_more = |c: &f64| {
-            limit *= self.part;
-            c.abs() > limit
-        };
-        let zeros = used.iter().position(is_more)?;
-        Some(Gap::new(&used[zeros..], sign, 0.0))
+    fn gap<'b>(&self, series: &'b (Series, f64), sign: f64) -> Option<Gap<'b>> {
+        opened(series, sign, self.order, self.part)
     }
+}
+
+/// As [`Rises::gap`], over a step with this highest `order` that is this `part` of the longest one.
+#[inline]
+fn opened<'b>((series, rounding): &'b (Series, f64), sign: f64, order: usize, part: f64) -> Option<Gap<'b>> {
+    let (used, mut limit) = (&series[..=order], rounding / part);
+    let is_more = |c: &f64| {
+        limit *= part;
+        c.abs() > limit
+    };
+    let zeros = used.iter().position(is_more)?;
+    Some(Gap::new(&used[zeros..], sign, 0.0))
 }
 
 /// The first instant up to `reach` at which all `gaps` are closed.
@@ -92,24 +112,41 @@ fn first<const N: usize>(gaps: [Option<Gap>; N], reach: f64) -> Crossing {
     }
 }
 
-/// The pressed points change.
+/// The points that are pressed, or that yield, change.
 pub(crate) struct Points;
 
+/// Signs of the branches in which a point yields, or is elastic again; ±1 is a touch or a release.
+const YIELDS: i8 = 2;
+const ELASTIC: i8 = -2;
+
 impl<Q: Coordinates> Guard<Q> for Points {
-    fn first(&self, &Step { level, contact, arc, reach, .. }: &Step<Q>) -> (Crossing, Branch) {
+    fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Branch) {
         let foundation = level.structure().ground();
         let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Branch::default()));
         for (i, point) in foundation.points.iter().enumerate() {
-            let pushes = || rises.at(point.xi, point.c / point.k);
+            let settled = start.state.u.settlement(foundation, i);
+            let pushes = |more: f64| rises.above(settled + more, point.xi, point.c / point.k);
             let reach = found.0.sigma().min(reach);
-            if contact.is_pressed(i) {
-                see(&mut found, first([rises.gap(&pushes(), -1.0)], reach), i, -1);
+            if contact.yields(i) {
+                let settles = std::array::from_fn(|k| arc.u_dot[k].settlement(foundation, i));
+                let rate = (settles, rises.rate(point.xi).1 + rises.rounding(point));
+                see(&mut found, first([rises.gap(&rate, 1.0)], reach), i, ELASTIC);
                 continue;
             }
-            let height = rises.at(point.xi, 0.0);
+            if contact.is_pressed(i) {
+                let depth = pushes(0.0);
+                see(&mut found, first([rises.gap(&depth, -1.0)], reach), i, -1);
+                let (reach, reserve) = (found.0.sigma().min(reach), point.q / point.k);
+                let most = Gap::new(&depth.0[..=arc.order], 1.0, reserve - depth.1);
+                if foundation.yields && !most.is_open_throughout(reach) {
+                    see(&mut found, first([rises.gap(&pushes(reserve), 1.0)], reach), i, YIELDS);
+                }
+                continue;
+            }
+            let height = rises.above(settled, point.xi, 0.0);
             let above = rises.gap(&height, 1.0);
             if above.is_some_and(|above| !above.is_open_throughout(reach)) {
-                see(&mut found, first([above, rises.gap(&pushes(), 1.0)], reach), i, 1);
+                see(&mut found, first([above, rises.gap(&pushes(0.0), 1.0)], reach), i, 1);
             }
         }
         found
@@ -120,8 +157,12 @@ impl<Q: Coordinates> Guard<Q> for Points {
         if let Phase::OnGround(contact) = &mut motion.phase {
             let ground = level.structure().ground();
             let ContactPoint { xi, k, .. } = *ground.points.get(i)?;
+            if branch.sign.abs() > 1 {
+                contact.yields ^= 1 << i;
+                return Some(if branch.sign == YIELDS { TransitionKind::Settles(i) } else { TransitionKind::Holds(i) });
+            }
             let footing = state.u.footing(ground);
-            let e = footing.height(xi);
+            let e = footing.height(xi) + state.u.settlement(ground, i);
             contact.pressed ^= 1 << i;
             let taken = footing.taken - f64::from(branch.sign) * 0.5 * k * e * e;
             state.u.set_footing(ground, Footing { taken, ..footing });
@@ -132,7 +173,14 @@ impl<Q: Coordinates> Guard<Q> for Points {
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         let (contact, foundation) = (now.motion.phase.contact(), now.level.structure().ground());
         let of = |(i, margin): (usize, f64)| if contact.is_pressed(i) { margin } else { -margin };
-        let least = margins(foundation, &now.motion.state).enumerate().map(of).fold(f64::INFINITY, f64::min);
+        let reserve = |(i, reserve): (usize, f64)| match contact {
+            _ if !contact.is_pressed(i) => f64::INFINITY,
+            _ if contact.yields(i) => -reserve,
+            _ => reserve,
+        };
+        let state = &now.motion.state;
+        let reserves = reserves(foundation, state).enumerate().map(reserve).filter(|_| foundation.yields);
+        let least = margins(foundation, state).enumerate().map(of).chain(reserves).fold(f64::INFINITY, f64::min);
         (0, least / foundation.y_s.abs() + BAND)
     }
 }
@@ -148,10 +196,13 @@ pub(crate) struct Tied;
 
 impl<Q: Coordinates> Guard<Q> for Tied {
     fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Branch) {
-        let foundation = level.structure().ground();
-        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Branch::default()));
-        let base = level.structure().base();
+        let (foundation, base) = (level.structure().ground(), level.structure().base());
+        let mut found = (Crossing::None, Branch::default());
         let Ties { P_0, k_t, k_d, F_y, .. } = base.ties;
+        if !base.is_restrained() {
+            return found;
+        }
+        let rises = Rises::new(level, arc);
         if k_t > 0.0 {
             let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.y_s);
             let (opens, sign) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
@@ -210,10 +261,263 @@ fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = 
     Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
 }
 
-/// The dissipators at the reach of a step.
-pub(crate) fn moved<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
+/// The dissipators at the reach of a step, and what friction and points that yield have taken there.
+pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
+    let &Step { level, contact, start, arc, reach, .. } = step;
+    let (ground, mut moved) = (level.structure().ground(), *start.dissipators);
+    if level.structure().base().is_restrained() {
+        moved = stretched(step);
+    }
+    if let (Friction::Slides(side), Some(mu_c), Some(place)) = (contact.friction, ground.mu_c, ground.slide()) {
+        let rate: Series = std::array::from_fn(|k| arc.u_dot[k].of(place));
+        let normal = normal(ground, contact, &start.state, arc);
+        let rubbed = product_integral(arc.used(&normal), arc.used(&rate), reach) * arc.span;
+        moved.slip += side.sign() * (Q::evaluate(arc.used(&arc.u), reach).of(place) - arc.u[0].of(place));
+        moved.friction += side.sign() * mu_c * rubbed;
+    }
+    if contact.yields != 0 {
+        let end = Q::evaluate(arc.used(&arc.u), reach);
+        for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
+            moved.settling += point.q * (end.settlement(ground, i) - arc.u[0].settlement(ground, i));
+        }
+    }
+    moved
+}
+
+fn stretched<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let (foundation, base, rises) = (level.structure().ground(), level.structure().base(), Rises::new(level, arc));
     let height = |j: usize| evaluate(&rises.at(places(base)[j], 0.0).0[..=arc.order], reach) - foundation.y_s;
     let power = |(c, rate): (f64, Terms)| c * arc.span * square_integral(rate.used(), reach);
     start.dissipators.stepped(base, height, dampers_on_ground(base, arc, foundation).map(power))
+}
+
+/// The base, which may slide, sticks, slides or flies.
+pub(crate) struct Sliding;
+
+impl Sliding {
+    /// The number of `friction` in a branch.
+    const fn sign(friction: Friction) -> i8 {
+        match friction {
+            Friction::Sticks => 0,
+            Friction::Slides(Side::Left) => -1,
+            Friction::Slides(Side::Right) => 1,
+            Friction::Free => 2,
+        }
+    }
+
+    /// The friction of the number.
+    const fn of(sign: i8) -> Friction {
+        match sign {
+            0 => Friction::Sticks,
+            -1 => Friction::Slides(Side::Left),
+            1 => Friction::Slides(Side::Right),
+            _ => Friction::Free,
+        }
+    }
+}
+
+/// The normal force of the points over a step, N.
+fn normal<Q: Coordinates>(ground: &Foundation, contact: PressedPoints, state: &State<Q>, arc: &Arc<Q>) -> Series {
+    let (mut k, mut c, mut push) = ([0.0; 2], [0.0; 2], 0.0);
+    for (i, &ContactPoint { xi, k: stiffness, c: damping, q }) in ground.points.iter().enumerate() {
+        match () {
+            () if !contact.is_pressed(i) => (),
+            () if contact.yields(i) => push += q,
+            () => {
+                (k, c) = ([k[0] + stiffness, k[1] + stiffness * xi], [c[0] + damping, c[1] + damping * xi]);
+                push -= stiffness * state.u.settlement(ground, i);
+            }
+        }
+    }
+    let mut normal = ZERO;
+    for (of, (u, u_dot)) in normal.iter_mut().zip(arc.used(&arc.u).iter().zip(&arc.u_dot)) {
+        let [of_u, rate] = [u, u_dot].map(|of| of.footing(ground));
+        *of = k[1] * of_u.sin - k[0] * of_u.y + c[1] * rate.sin - c[0] * rate.y;
+    }
+    normal[0] += push;
+    normal
+}
+
+/// The friction that a base needs to stick over a step, N: R_h = m_t a_g − Σ F + (S_1 sin θ + μ cos θ)¨ (S2).
+struct Needed {
+    /// R_h without the part −[μ (1 − cos θ)]¨.
+    linear: Series,
+    /// The rate of μ over the step.
+    rate: Series,
+}
+
+impl Needed {
+    fn new<Q: Coordinates>(structure: &Structure, start: &Start<Q>, arc: &Arc<Q>) -> Needed {
+        let (ground, modes) = (structure.ground(), structure.modes());
+        let (m_t, S_1) = (structure.base().m_t, structure.body().S_1);
+        let (mut linear, mut rate) = (ZERO, ZERO);
+        for (k, u_dot) in arc.used(&arc.u_dot).iter().enumerate() {
+            rate[k] = offset(modes, u_dot);
+            if k > 0 {
+                linear[k - 1] = ORDERS[k] / arc.span * (S_1 * u_dot.footing(ground).sin + rate[k]);
+            }
+        }
+        let pushed = |a_g: f64, a_top: &Q| {
+            let of_modes = modes.iter().enumerate().map(|(j, mode)| mode.gamma * (mode.share * a_g - a_top.of(j)));
+            of_modes.sum::<f64>() + a_top.rest().map_or(0.0, |[force, _]| force)
+        };
+        for (k, a_g, a_top, scale) in
+            [(0, start.a_g.value, &start.a_top.value, 1.0), (1, start.a_g.slope, &start.a_top.slope, arc.span)]
+        {
+            linear[k] += scale * (m_t * a_g - pushed(a_g, a_top));
+        }
+        Needed { linear, rate }
+    }
+
+    /// Bound of the part that is left out.
+    fn rest<Q: Coordinates>(&self, modes: &[Mode], arc: &Arc<Q>) -> f64 {
+        let most = |of: &Series| sum_of_magnitudes(arc.used(of));
+        let slope = |of: &Series| weighed_sum(&ORDERS[1..], &of[1..=arc.order]) / arc.span;
+        let (theta, theta_dot, bend) = (most(&arc.theta), most(&arc.theta_dot), slope(&arc.theta_dot));
+        let (rate, second) = (most(&self.rate), slope(&self.rate));
+        let offset = offset(modes, &arc.u[0]).abs() + arc.span * rate;
+        second * theta * theta / 2.0 + 2.0 * rate * theta_dot * theta + offset * (bend * theta + theta_dot * theta_dot)
+    }
+
+    /// R_h over the step.
+    fn series<Q: Coordinates>(&self, structure: &Structure, arc: &Arc<Q>) -> Series {
+        let [mut sin, mut cos, mut of] = [ZERO; 3];
+        for (k, u) in arc.used(&arc.u).iter().enumerate() {
+            (sin[k], of[k]) = (u.footing(structure.ground()).sin, offset(structure.modes(), u));
+        }
+        cos[0] = libm::cos(arc.theta[0]);
+        (1..=arc.order).for_each(|k| cos[k] = -product(&arc.theta_dot, &sin, k - 1) * arc.span / ORDERS[k]);
+        let mut needed = self.linear;
+        for k in 2..=arc.order {
+            let second = ORDERS[k] * ORDERS[k - 1] / (arc.span * arc.span);
+            needed[k - 2] += second * product(&of, &cos, k) - ORDERS[k - 1] / arc.span * self.rate[k - 1];
+        }
+        needed
+    }
+}
+
+/// μ of these coordinates, kg·m, or its rate.
+#[inline(always)]
+fn offset<Q: Coordinates>(modes: &[Mode], u: &Q) -> f64 {
+    modes.iter().enumerate().map(|(j, mode)| mode.gamma * u.of(j)).sum()
+}
+
+/// How friction goes on where the base stops or is touched in `state`, `tau` seconds after `start`: it sticks unless it needs more than the
+/// friction that there is (S4).
+fn stopped<Q: Coordinates>(
+    level: &dyn Level<Q>,
+    contact: PressedPoints,
+    (start, tau): (&Start<Q>, f64),
+    mut state: State<Q>,
+) -> Friction {
+    let structure = level.structure();
+    let (ground, contact) = (structure.ground(), PressedPoints { friction: Friction::Sticks, ..contact });
+    set_rate(ground, &mut state, 0.0);
+    let (a_g, a_top, a_v) = (start.a_g.from(tau), start.a_top.from(tau), start.a_v.from(tau));
+    let start = Start { state, a_g, a_top, a_v, interval: level.longest_step(), ..*start };
+    let mut arc = Arc::default();
+    level.series(Phase::OnGround(contact), &start, &mut arc);
+    let needed = Needed::new(structure, &start, &arc).series(structure, &arc)[0];
+    let most = ground.mu_c.unwrap_or(0.0) * normal(ground, contact, &state, &arc)[0];
+    match needed.abs() > most + ROUNDING * structure.base().m_t * structure.base().g {
+        true => Friction::Slides(Side::of(-needed)),
+        false => Friction::Sticks,
+    }
+}
+
+/// Writes ẋ.
+fn set_rate<Q: Coordinates>(ground: &Foundation, state: &mut State<Q>, x_dot: f64) {
+    ground.slide().into_iter().for_each(|place| state.u_dot.set(place, x_dot));
+}
+
+/// Part of a step by which a change of friction comes later than the change of a point at the same instant.
+const AT_ONCE: f64 = 1e-12;
+
+impl<Q: Coordinates> Guard<Q> for Sliding {
+    fn first(&self, step: &Step<Q>) -> (Crossing, Branch) {
+        let &Step { level, contact, start, arc, reach, is_cut, .. } = step;
+        let none = (Crossing::None, Branch::default());
+        let (structure, ground) = (level.structure(), level.structure().ground());
+        let Some(mu_c) = ground.mu_c else { return none };
+        // points come first, then friction once
+        let reach = if is_cut { (1.0 - AT_ONCE) * reach - f64::MIN_POSITIVE } else { reach };
+        if reach < 0.0 {
+            return none;
+        }
+        let becomes = |crossing, friction| (crossing, Branch { which: 0, sign: Sliding::sign(friction) });
+        let (is_free, x_dot) = (contact.pressed == 0, start.state.u_dot.slide(ground).unwrap_or(0.0));
+        match contact.friction {
+            Friction::Free if is_free => none,
+            _ if is_free => becomes(Crossing::At(0.0), Friction::Free),
+            Friction::Free if x_dot != 0.0 => becomes(Crossing::At(0.0), Friction::Slides(Side::of(x_dot))),
+            Friction::Free => becomes(Crossing::At(0.0), stopped(level, contact, (start, 0.0), start.state)),
+            Friction::Sticks => {
+                let (needed, normal) = (Needed::new(structure, start, arc), normal(ground, contact, &start.state, arc));
+                let side = |needed: &Series, sign: f64| -> Series {
+                    std::array::from_fn(|k| mu_c * normal[k] - sign * needed[k])
+                };
+                let rest = needed.rest(structure.modes(), arc);
+                let is_open = |sign: f64| {
+                    let gap = side(&needed.linear, sign);
+                    gap[0] - rest > sum_of_magnitudes(&gap[1..=arc.order]) * reach
+                };
+                if is_open(1.0) && is_open(-1.0) {
+                    return none;
+                }
+                let (needed, mut found) = (needed.series(structure, arc), none);
+                let rounding = ROUNDING * structure.base().m_t * structure.base().g;
+                let part = arc.span / level.longest_step();
+                for (sign, slides) in [(1.0, Side::Left), (-1.0, Side::Right)] {
+                    let gap = (side(&needed, sign), rounding);
+                    // the last two orders of R_h are not known
+                    let gap = opened(&gap, 1.0, arc.order.saturating_sub(2), part);
+                    let sign = Sliding::sign(Friction::Slides(slides));
+                    let crossing = first([gap], found.0.sigma().min(reach));
+                    see(&mut found, crossing, usize::from(crossing == Crossing::At(0.0)), sign);
+                }
+                found
+            }
+            Friction::Slides(side) => {
+                let rounding = ROUNDING * structure.base().g * level.longest_step();
+                let rate = std::array::from_fn(|k| arc.u_dot[k].slide(ground).unwrap_or(0.0));
+                let gap = (rate, if x_dot == 0.0 { rounding } else { 0.0 });
+                match first([opened(&gap, side.sign(), arc.order, arc.span / level.longest_step())], reach) {
+                    Crossing::At(sigma) => {
+                        let state = arc.at(sigma);
+                        becomes(Crossing::At(sigma), stopped(level, contact, (start, sigma * arc.span), state))
+                    }
+                    crossing => (crossing, Branch::default()),
+                }
+            }
+        }
+    }
+
+    fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind> {
+        let Phase::OnGround(contact) = &mut motion.phase else { return None };
+        let (before, after) = (contact.friction, Sliding::of(branch.sign));
+        contact.friction = after;
+        // the friction from the start on is no change of it
+        if branch.which == 1 && motion.transitions == 0 && motion.work.steps <= 1 {
+            return None;
+        }
+        if matches!((before, after), (Friction::Slides(_), Friction::Slides(_) | Friction::Sticks)) {
+            set_rate(level.structure().ground(), &mut motion.state, 0.0);
+        }
+        Some(TransitionKind::Friction(after))
+    }
+
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
+        let (structure, Motion { phase, state, .. }) = (now.level.structure(), &now.motion);
+        let (base, ground, contact) = (structure.base(), structure.ground(), phase.contact());
+        let x_dot = state.u_dot.slide(ground).unwrap_or(0.0);
+        let margin = match (ground.mu_c, contact.friction) {
+            (Some(_), Friction::Slides(side)) => side.sign() * x_dot / (base.g * base.B).sqrt(),
+            (Some(mu_c), Friction::Sticks) => {
+                let N: f64 = (0..ground.points.len()).map(|i| now.output(Output::N(i))).sum();
+                (mu_c * N - now.reactions().R_h.abs()) / (base.m_t * base.g)
+            }
+            _ => 1.0,
+        };
+        (1, margin + BAND)
+    }
 }

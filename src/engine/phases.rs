@@ -3,7 +3,7 @@
 //! The loop of the [engine](crate::engine) expands the motion, finds the first guard that closes, and applies the guard's transition.
 //! A new kind of contact is one more [`Rules`] here, with its guards.
 
-use crate::engine::contacts::{self, Points, Tied};
+use crate::engine::contacts::{self, Points, Sliding, Tied};
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
@@ -20,7 +20,7 @@ use crate::numbers::Real;
 use crate::series::extremes::off_chord;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
-use crate::{Phase, Side, Structure};
+use crate::{Foundation, Phase, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
 
 /// A phase as the loop knows it.
@@ -59,15 +59,16 @@ impl<Q: Coordinates> Rules<Q> {
     /// Ground that gives.
     const ON_GROUND: &'static Rules<Q> = &Rules { guards: &[&Overturning, &Points], ..Rules::RESTING };
 
-    /// Ground that gives, with a tendon or dissipators.
+    /// Ground that gives, with a tendon or dissipators, or with points that may yield, or under a base that may slide.
     const ON_GROUND_TIED: &'static Rules<Q> =
-        &Rules { guards: &[&Overturning, &Points, &Tied], moved: Some(contacts::moved), ..Rules::RESTING };
+        &Rules { guards: &[&Overturning, &Points, &Tied, &Sliding], moved: Some(contacts::moved), ..Rules::RESTING };
 
     /// The dissipators at the reach of `step`, if it moves them.
     #[inline]
     pub(crate) fn moved(&self, subject: &LevelSubject, step: &Step<Q>) -> Option<Dissipators> {
-        let is_restrained = || subject.is_tied && subject.structure.base().is_restrained();
-        self.moved.filter(|_| is_restrained()).map(|moved| moved(step))
+        let is_restrained = subject.is_tied && subject.structure.base().is_restrained();
+        let may_stay_moved = || Q::foundation(&subject.structure).is_some_and(Foundation::may_stay_moved);
+        self.moved.filter(|_| is_restrained || may_stay_moved()).map(|moved| moved(step))
     }
 }
 
@@ -79,10 +80,12 @@ pub(crate) fn of<Q: Coordinates>(structure: &Structure, motion: &Motion<Q>) -> O
         Phase::FullContact => Some(Rules::CONTACT),
         Phase::Rocking(_) if structure.base().ties.F_y > 0.0 => Some(Rules::ROCKING_YIELDING),
         Phase::Rocking(_) => Some(Rules::ROCKING),
-        Phase::OnGround(_) => Q::foundation(structure).map(|_| match structure.base().is_restrained() {
-            true => Rules::ON_GROUND_TIED,
-            false => Rules::ON_GROUND,
-        }),
+        Phase::OnGround(_) => {
+            Q::foundation(structure).map(|of| match structure.base().is_restrained() || of.may_stay_moved() {
+                true => Rules::ON_GROUND_TIED,
+                false => Rules::ON_GROUND,
+            })
+        }
         Phase::Overturned(_) => None,
     }
 }

@@ -19,7 +19,7 @@ use crate::mechanics::restraint::Dissipators;
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
 use crate::series::terms::Terms;
-use crate::{Output, Phase, Ramp, State, Structure};
+use crate::{Friction, Output, Phase, Ramp, State, Structure};
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
@@ -158,7 +158,8 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
     fn dissipators_at(&self, tau: f64) -> Dissipators {
         let moved = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
             let (level, side, contact) = (self.level, self.before.phase.side(), self.before.phase.contact());
-            let step = Step { level, side, contact, start: &self.whole().step(), arc, reach: tau / arc.span };
+            let step =
+                Step { level, side, contact, start: &self.whole().step(), arc, reach: tau / arc.span, is_cut: false };
             watched.moved(level.subject(), &step)
         });
         moved.unwrap_or(self.before.dissipators)
@@ -382,6 +383,7 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
             }
         };
         let [u, u_dot] = [&arc.u, &arc.u_dot].map(|of| Polynomials::Motion(arc.used(of)));
+        let a_g = Terms::ramp(value.a_g, slope.a_g * arc.span);
         let a_v = Terms::ramp(value.a_v, slope.a_v * arc.span);
         Instant {
             structure,
@@ -394,7 +396,7 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
             theta_dot,
             theta_ddot: theta_dot.slope(arc.span),
             turn,
-            a_g: Terms::ramp(value.a_g, slope.a_g * arc.span),
+            a_g: self.drive().map_or(a_g, |drive| a_g + drive),
             F_t: Polynomials::Load(Ramp { value: value.F_t, slope: slope.F_t }, arc.span),
             a_v: self.lift().map_or(a_v, |lift| a_v + lift),
         }
@@ -402,8 +404,18 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
 
     /// ÿ on ground that gives, m/s².
     pub(crate) fn lift(&self) -> Option<Terms> {
-        let place = Q::foundation(self.piece.level.structure())?.place;
-        Some(Polynomials::Motion(self.arc.used(&self.arc.u_dot)).of(place).slope(self.arc.span))
+        Some(self.acceleration(Q::foundation(self.piece.level.structure())?.place))
+    }
+
+    /// ẍ of a base that may slide, m/s².
+    pub(crate) fn drive(&self) -> Option<Terms> {
+        let place = Q::foundation(self.piece.level.structure())?.slide()?;
+        (self.piece.before.phase.contact().friction != Friction::Sticks).then(|| self.acceleration(place))
+    }
+
+    /// The acceleration of the lateral coordinate at this `place`.
+    fn acceleration(&self, place: usize) -> Terms {
+        Polynomials::Motion(self.arc.used(&self.arc.u_dot)).of(place).slope(self.arc.span)
     }
 
     /// Bounds of the magnitudes.
@@ -420,9 +432,12 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         let a_g = || Ramp { value: loads[0].a_g, slope: piece.load.slope.a_g };
         let has_feedthrough = structure.gauges().has_feedthrough;
         let needs_arc = has_feedthrough || Q::foundation(structure).is_some();
-        let lift = if has_feedthrough { self.lift() } else { None };
-        let lift = lift.map_or(0.0, |lift| sum_of_magnitudes(lift.used()));
-        Magnitudes { arc: needs_arc.then(|| (arc, a_g())), a_v: most.a_v + lift, ..most }
+        let most_of = |of: Option<Terms>| of.map_or(0.0, |of| sum_of_magnitudes(of.used()));
+        let [drive, lift] = match has_feedthrough {
+            true => [most_of(self.drive()), most_of(self.lift())],
+            false => [0.0; 2],
+        };
+        Magnitudes { arc: needs_arc.then(|| (arc, a_g())), a_g: most.a_g + drive, a_v: most.a_v + lift, ..most }
     }
 
     /// Shows the series of outputs in σ, each with its polynomial. This polynomial is shown whole, or in parts if sin θ and cos θ need

@@ -66,7 +66,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
                 Output::P_t => ties().P_t,
                 Output::F_d1 => ties().F_d1,
                 Output::F_d2 => ties().F_d2,
-                _ => output.of(&shown),
+                _ => output.added_up(&self.motion.dissipators).unwrap_or_else(|| output.of(&shown)),
             }
         }
     }
@@ -85,7 +85,5 @@ pub(crate) fn shown<'a, Q: Coordinates>(level: &'a dyn Level<Q>, phase: Phase, n
     if !structure.gauges().has_feedthrough {
         return x;
     }
-    let Second { u_ddot, theta_ddot } = level.accelerations(phase, now);
-    let lift = Q::foundation(structure).map_or(0.0, |ground| u_ddot.footing(ground).y);
-    Instant { theta_ddot, a_v: x.a_v + lift, ..x }
+    x.accelerated(&level.accelerations(phase, now))
 }

@@ -20,6 +20,8 @@ pub(crate) struct Step<'a, Q: Coordinates = f64> {
     pub arc: &'a Arc<Q>,
     /// The σ up to which no guard is known to close.
     pub reach: f64,
+    /// Whether a guard closes there.
+    pub is_cut: bool,
 }
 
 /// Which of several conditions of a guard closes: a number and a sign, with the meaning that the guard gives them.

@@ -4,7 +4,7 @@ use crate::engine::motion::Motion;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::reactions::Impulse;
-use crate::{Phase, Side, State};
+use crate::{Friction, Phase, Side, State};
 
 /// The change at a transition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +27,12 @@ pub enum TransitionKind {
     Touch(usize),
     /// The ground releases this contact point.
     Release(usize),
+    /// This contact point begins to yield: the ground settles there.
+    Settles(usize),
+    /// This contact point ceases to yield.
+    Holds(usize),
+    /// The friction of a base that may slide: it sticks, slides or flies from now on.
+    Friction(Friction),
     /// The tendon becomes taut.
     Taut,
     /// The tendon becomes slack.
@@ -57,6 +63,12 @@ impl TransitionKind {
             TransitionKind::Unloading(_) => "unloading of the second dissipator",
             TransitionKind::Touch(_) => "touch",
             TransitionKind::Release(_) => "release",
+            TransitionKind::Settles(_) => "ground yields",
+            TransitionKind::Holds(_) => "ground holds",
+            TransitionKind::Friction(Friction::Sticks) => "stick",
+            TransitionKind::Friction(Friction::Slides(Side::Left)) => "slip left",
+            TransitionKind::Friction(Friction::Slides(Side::Right)) => "slip right",
+            TransitionKind::Friction(Friction::Free) => "flight",
             TransitionKind::Taut => "tendon taut",
             TransitionKind::Slack => "tendon slack",
         }

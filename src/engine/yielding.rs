@@ -110,12 +110,20 @@ pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }
 
 /// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.
 pub(super) fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
-    let mut terms = ZERO;
-    terms.iter_mut().zip(coefficients).fold(1.0, |power, (term, c)| {
-        *term = c * power;
-        power * reach
-    });
-    let terms = &terms[..coefficients.len()];
-    let with = |(i, a): (usize, &f64)| terms.iter().enumerate().map(|(j, b)| a * b / (i + j + 1) as f64).sum::<f64>();
-    terms.iter().enumerate().map(with).sum::<f64>() * reach
+    product_integral(coefficients, coefficients, reach)
+}
+
+/// ∫ (Σ a_k σᵏ) (Σ b_k σᵏ) dσ from 0 to `reach`.
+pub(super) fn product_integral(a: &[f64], b: &[f64], reach: f64) -> f64 {
+    let terms = |coefficients: &[f64]| {
+        let mut terms = ZERO;
+        terms.iter_mut().zip(coefficients).fold(1.0, |power, (term, c)| {
+            *term = c * power;
+            power * reach
+        });
+        terms
+    };
+    let [a, b] = [a, b].map(|of| (terms(of), of.len())).map(|(terms, len)| terms.into_iter().take(len));
+    let with = |(i, a): (usize, f64)| b.clone().enumerate().map(|(j, b)| a * b / (i + j + 1) as f64).sum::<f64>();
+    a.enumerate().map(with).sum::<f64>() * reach
 }

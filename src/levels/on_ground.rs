@@ -28,7 +28,7 @@ use crate::mechanics::restraint::{Dissipators, ties};
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product};
 use crate::structure::ground::Footing;
 use crate::structure::mode::Modes;
-use crate::{Base, Foundation, Phase, PressedPoints, State};
+use crate::{Base, Foundation, Friction, Phase, PressedPoints, State};
 use std::cell::RefCell;
 use wide::{f64x2, f64x4};
 
@@ -38,9 +38,10 @@ const AT_REST: f64 = 0.9;
 /// A structure on ground that gives.
 #[derive(Clone, Debug)]
 pub(crate) struct OnGround<V: Abreast> {
-    subject: LevelSubject,
-    /// The longest span of a series, s.
+    pub(super) subject: LevelSubject,
+    /// The longest span of a series, and of one of a base that slides, s.
     longest_span: f64,
+    pub(super) longest_slide: f64,
     /// The lowest frequency, rad/s, and the radius of gyration √(J_P/m_t), m.
     lowest: f64,
     radius: f64,
@@ -49,6 +50,66 @@ pub(crate) struct OnGround<V: Abreast> {
     scratch: RefCell<Box<GroundScratch<V>>>,
     /// Room for the series of which only the first terms count.
     first: RefCell<Box<Arc<Modes>>>,
+}
+
+/// The forces of the pressed points and of ties on the base as functions of its motion.
+pub(super) struct Pushes {
+    /// Σ N and Σ ξ N at y = sin θ = 0 and at rest.
+    pub push: [f64; 2],
+    /// N and Σ ξ N by y, sin θ, ẏ and θ̇ cos θ.
+    pub by: [f64x2; 4],
+    /// The power of the dashpots of elastic points is taken (ẏ − lever θ̇ cos θ)² and what is left for (θ̇ cos θ)².
+    pub taken: f64,
+    pub lever: f64,
+    pub left_for_turning: f64,
+    k: [f64; 3],
+    c: [f64; 3],
+}
+
+impl Pushes {
+    /// Of the points of `ground` in this `contact`, which have settled as in `state`.
+    pub fn of(ground: &Foundation, contact: PressedPoints, state: &State<Modes>) -> Pushes {
+        // Σ N = push − k y + k ξ sin θ − c ẏ + c ξ θ̇ cos θ, and Σ ξ N
+        let (mut k, mut c, mut push) = ([0.0; 3], [0.0; 3], [0.0; 2]);
+        for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i)) {
+            if contact.yields(i) {
+                push = [push[0] + point.q, push[1] + point.xi * point.q];
+                continue;
+            }
+            add_moments(&mut k, point.xi, point.k);
+            add_moments(&mut c, point.xi, point.c);
+            if ground.yields {
+                let force = point.k * state.u.settlement(ground, i);
+                push = [push[0] - force, push[1] - point.xi * force];
+            }
+        }
+        let lever = if c[0] > 0.0 { c[1] / c[0] } else { 0.0 };
+        Pushes { push, by: forces_by(k, c), taken: c[0], lever, left_for_turning: c[2] - lever * c[1], k, c }
+    }
+
+    /// These with the ties of `subject`.
+    pub fn with_ties(self, subject: &LevelSubject, start: &Start<Modes>, contact: PressedPoints) -> Pushes {
+        let Pushes { mut push, mut k, mut c, .. } = self;
+        if !subject.is_tied {
+            return self;
+        }
+        let (base, y_s) = (subject.structure.base(), subject.structure.ground().y_s);
+        for tie in ties(base, start.dissipators, y_s, contact.is_slack) {
+            add_moments(&mut k, tie.lever, tie.stiffness);
+            add_moments(&mut c, tie.lever, tie.damping);
+            push = [push[0] - tie.force, push[1] - tie.lever * tie.force];
+        }
+        Pushes { push, by: forces_by(k, c), ..self }
+    }
+}
+
+/// Adds `of` at ξ to its sums with 1, ξ and ξ².
+fn add_moments(sums: &mut [f64; 3], xi: f64, of: f64) {
+    *sums = [sums[0] + of, sums[1] + of * xi, sums[2] + of * xi * xi];
+}
+
+fn forces_by(k: [f64; 3], c: [f64; 3]) -> [f64x2; 4] {
+    [[-k[0], -k[1]], [k[1], k[2]], [-c[0], -c[1]], [c[1], c[2]]].map(f64x2::new)
 }
 
 /// Two rows of four factors of an order.
@@ -81,8 +142,10 @@ impl<V: Abreast> OnGround<V> {
         let (base, body, modes) = (structure.base(), structure.body(), structure.modes());
         let foundation = structure.ground();
         let frequencies = foundation.frequencies(base, body, modes);
+        let fastest = foundation.fastest(&frequencies, base, modes);
         OnGround {
-            longest_span: LONGEST_SPAN / foundation.fastest(&frequencies, base, modes),
+            longest_span: LONGEST_SPAN / fastest,
+            longest_slide: LONGEST_SPAN / foundation.fastest_sliding(fastest, base, modes),
             lowest: frequencies[0],
             radius: (base.J_P / base.m_t).sqrt(),
             least_lift: foundation.least_lift(base, body, modes),
@@ -100,7 +163,7 @@ impl<V: Abreast> OnGround<V> {
     }
 
     /// The truncation that `start` requires over a step of `span` s.
-    fn truncation(&self, start: &Start<Modes>, span: f64) -> Truncation<Modes> {
+    pub(super) fn truncation(&self, start: &Start<Modes>, span: f64) -> Truncation<Modes> {
         let (structure, state) = (&self.subject.structure, &start.state);
         let (&Base { m_t, g, tan_alpha_cg, .. }, ground) = (structure.base(), structure.ground());
         let size = |of: &dyn Fn(usize, f64) -> f64| {
@@ -115,6 +178,7 @@ impl<V: Abreast> OnGround<V> {
         let velocity = start.local_error * velocity;
         let mut u_dot = Modes::each(structure, |_, mode| velocity * (m_t / mode.mass).sqrt());
         u_dot.set_footing(ground, Footing { y: velocity, sin: theta_dot, taken: f64::INFINITY });
+        ground.beside().for_each(|place| u_dot.set(place, velocity));
         Truncation { u_dot, theta_dot }
     }
 
@@ -124,30 +188,12 @@ impl<V: Abreast> OnGround<V> {
         let structure = &self.subject.structure;
         let &Base { m_t, J0, S_res, g, .. } = structure.base();
         let (under, modes) = (structure.ground(), structure.modes().len());
-        let &Foundation { ref points, y_s, .. } = under;
-        let span = start.interval.min(self.longest_span);
-        // Σ N = push − k y + k ξ sin θ − c ẏ + c ξ θ̇ cos θ, and Σ ξ N
-        let (mut k, mut taken, mut push) = ([0.0; 3], [0.0; 3], [0.0; 2]);
-        let moments =
-            |sums: &mut [f64; 3], xi: f64, of: f64| *sums = [sums[0] + of, sums[1] + of * xi, sums[2] + of * xi * xi];
-        for (_, point) in points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i)) {
-            moments(&mut k, point.xi, point.k);
-            moments(&mut taken, point.xi, point.c);
-        }
-        let mut c = taken;
-        if self.subject.is_tied {
-            for tie in ties(structure.base(), start.dissipators, y_s, contact.is_slack) {
-                moments(&mut k, tie.lever, tie.stiffness);
-                moments(&mut c, tie.lever, tie.damping);
-                push = [push[0] - tie.force, push[1] - tie.lever * tie.force];
-            }
-        }
-        // N and Σ ξ N by y, sin θ, ẏ and θ̇ cos θ
-        let by = [[-k[0], -k[1]], [k[1], k[2]], [-c[0], -c[1]], [c[1], c[2]]].map(f64x2::new);
+        let has_more = under.may_stay_moved();
+        let span = start.interval.min(self.longest_span).min(under.longest_yielding(contact));
+        let pushes @ Pushes { by, taken, lever, left_for_turning, .. } =
+            Pushes::of(under, contact, state).with_ties(&self.subject, start, contact);
+        let mut push = pushes.push;
         let (ground, mut weight) = ([a_g.value, a_g.slope * span], [g + a_v.value, a_v.slope * span]);
-        // the power of the dashpots is c (ẏ − lever θ̇ cos θ)² and what is left for (θ̇ cos θ)²
-        let lever = if taken[0] > 0.0 { taken[1] / taken[0] } else { 0.0 };
-        let left_for_turning = taken[2] - lever * taken[1];
         let GroundScratch { fours, left, right, squared, pushed, square } = &mut **self.scratch.borrow_mut();
         let fours = fours.as_mut();
         let (mut inertia, mut offset, mut carried, mut is_pushed) = (V::default(), V::default(), V::default(), false);
@@ -178,6 +224,8 @@ impl<V: Abreast> OnGround<V> {
         let mut state = *state;
         state.u.set_footing(under, Footing { sin: sin_0, ..state.u.footing(under) });
         state.u_dot.set_footing(under, Footing { sin: turning, ..state.u_dot.footing(under) });
+        under.rest_beside(&mut state.u_dot);
+        under.settle(contact, &state.u, &mut state.u_dot, 0);
         let truncation = self.truncation(start, span);
         let per_span = 1.0 / span;
         arc.expand(&state, span, &truncation, |arc, order, per| {
@@ -207,7 +255,10 @@ impl<V: Abreast> OnGround<V> {
             }
             let [turning_square, of_middle, of_turning, _] = squares.to_array();
             square[MAX_ORDER - n] = V::each(|_| turning_square);
-            let power = taken[0] * of_middle + left_for_turning * of_turning;
+            let mut power = taken * of_middle + left_for_turning * of_turning;
+            if contact.yields != 0 {
+                power += under.power_of_yielding(contact, arc, n);
+            }
             let rates = arc.u_dot[n].footing(under);
             arc.u_dot[n].set_footing(under, Footing { taken: power, ..rates });
             let [N, M] = (f64x2::new(push) + by[0] * y + by[1] * sin + by[2] * y_dot + by[3] * turning).to_array();
@@ -254,6 +305,12 @@ impl<V: Abreast> OnGround<V> {
             (sin_before, cos_before, sin, cos, offset) = (sin, cos, next_sin, next_cos, next_offset);
             new.set_footing(under, Footing { y, sin, taken: power * per });
             new_rate.set_footing(under, Footing { y: y_dot, sin: turning, taken: 0.0 });
+            if has_more {
+                under.rest_beside(new_rate);
+            }
+            if contact.yields != 0 {
+                under.settle(contact, new, new_rate, order);
+            }
             theta_dot
         });
     }
@@ -274,7 +331,11 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
     }
 
     fn series(&self, phase: Phase, start: &Start<Modes>, arc: &mut Arc<Modes>) {
-        self.motion(phase.contact(), start, arc);
+        let contact = phase.contact();
+        match contact.friction {
+            Friction::Sticks => self.motion(contact, start, arc),
+            Friction::Slides(_) | Friction::Free => self.slide(contact, start, arc),
+        }
     }
 
     fn first(&self) -> &RefCell<Box<Arc<Modes>>> {

@@ -4,18 +4,32 @@ use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{self, Dissipators, Tie, places};
-use crate::structure::ground::{ContactPoint, Footing};
+use crate::structure::ground::{ContactPoint, FOOTING, Footing};
 use crate::structure::mode::Modes;
-use crate::{Base, Foundation, Load, Phase, PressedPoints, State, Structure, Ties};
+use crate::{Base, Foundation, Friction, Load, Phase, PressedPoints, Side, State, Structure, Ties};
+
+/// −e and f/k of each point, m (S5).
+fn heights<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = [f64; 2]> {
+    let (footing, u) = ([state.u, state.u_dot].map(|q| q.footing(foundation)), state.u);
+    foundation.points.iter().enumerate().map(move |(i, &ContactPoint { xi, k, c, .. })| {
+        let [e, rate] = footing.map(|of| of.height(xi));
+        let e = if foundation.yields { e + u.settlement(foundation, i) } else { e };
+        [-e, -(e + c / k * rate)]
+    })
+}
 
 /// min(−e, f/k) of each point, m: positive if the point is pressed.
 pub(crate) fn margins<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
-    let footing = [state.u, state.u_dot].map(|q| q.footing(foundation));
-    foundation.points.iter().map(move |&ContactPoint { xi, k, c }| {
-        let [e, rate] = footing.map(|of| of.height(xi));
-        (-e).min(-(e + c / k * rate))
-    })
+    heights(foundation, state).map(|[depth, push]| depth.min(push))
 }
+
+/// (q − f)/k of each point, m: what it can be pressed more before it yields.
+pub(crate) fn reserves<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
+    heights(foundation, state).zip(&foundation.points).map(|([_, push], point)| point.q / point.k - push)
+}
+
+/// Part of its capacity by which a point may miss it and yield all the same.
+const ON_CAPACITY: f64 = 1e-12;
 
 impl Foundation {
     /// `state` of a structure that is held at its rotation and lowered until the ground carries it, with a rate at which the forces of the
@@ -26,15 +40,31 @@ impl Foundation {
         let (mut begun, turning) = (*state, state.theta_dot * cos);
         begun.u.set_footing(self, Footing { y, sin, taken: 0.0 });
         begun.u_dot.set_footing(self, Footing { y: slope * turning, sin: turning, taken: 0.0 });
+        for place in self.place + FOOTING..self.place + self.coordinates() {
+            begun.u.set(place, 0.0);
+            begun.u_dot.set(place, 0.0);
+        }
+        for (i, &ContactPoint { xi, k, q, .. }) in self.points.iter().enumerate().filter(|_| self.yields) {
+            begun.u.set(self.settled() + i, (xi * sin - y - q / k).max(0.0));
+        }
         begun
     }
 
     /// The points that carry the base in `state`.
     pub(crate) fn contact<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> PressedPoints {
-        let pressed = margins(self, state).enumerate().map(|(i, margin)| u32::from(margin > 0.0) << i).sum();
+        let bits = |is_so: &dyn Fn(usize, [f64; 2]) -> bool| -> u32 {
+            heights(self, state).enumerate().map(|(i, of)| u32::from(is_so(i, of)) << i).sum()
+        };
+        let pressed = bits(&|_, [depth, push]| depth > 0.0 && push > 0.0);
+        let yields = bits(&|i, [_, push]| self.points[i].k * push >= self.points[i].q * (1.0 - ON_CAPACITY)) & pressed;
+        let friction = match state.u_dot.slide(self) {
+            Some(_) if pressed == 0 => Friction::Free,
+            Some(x_dot) if x_dot != 0.0 => Friction::Slides(Side::of(x_dot)),
+            _ => Friction::Sticks,
+        };
         let Ties { P_0, k_t, .. } = base.ties;
         let is_slack = k_t > 0.0 && P_0 + k_t * (state.u.footing(self).y - self.y_s) < 0.0;
-        PressedPoints { pressed, points: self.points.len() as u8, is_slack }
+        PressedPoints { pressed, points: self.points.len() as u8, is_slack, yields, friction }
     }
 
     /// The dissipators of a structure that was moved slowly to `state`.
@@ -52,7 +82,7 @@ impl Foundation {
 ///     + g [m_t y + S_1 cos θ − μ sin θ] + Σ ½ k e² + P_0 (y − y_s) + ½ k_t (y − y_s)² + Σ F²/(2 k_d)
 /// ```
 ///
-/// A slack tendon has −P_0²/(2 k_t).
+/// A slack tendon has −P_0²/(2 k_t). A base that slides adds ½ m_t ẋ² + ẋ [cos θ (Σ Γ u̇ + S_1 θ̇) − μ θ̇ sin θ].
 pub fn energy(structure: &Structure, contact: PressedPoints, state: &State<Modes>, dissipators: &Dissipators) -> f64 {
     let x = Instant::<f64, Modes>::of(structure, Phase::OnGround(contact), state, Load::NONE);
     let Some(ground @ Foundation { points, y_s, .. }) = structure.foundation() else { return mechanical(&x) };
@@ -61,11 +91,15 @@ pub fn energy(structure: &Structure, contact: PressedPoints, state: &State<Modes
     let (y, y_dot, turn) = (state.u.footing(ground).y, state.u_dot.footing(ground).y, x.turn);
     let across = turn.sin * (rate + S_1 * x.theta_dot) + offset * x.theta_dot * turn.cos;
     let pressed = points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i));
-    let of_points: f64 = pressed.map(|(_, point)| 0.5 * point.k * (y - point.xi * turn.sin).powi(2)).sum();
+    let e = |i: usize, xi: f64| y - xi * turn.sin + state.u.settlement(ground, i);
+    let of_points: f64 = pressed.map(|(i, point)| 0.5 * point.k * e(i, point.xi).powi(2)).sum();
+    let x_dot = state.u_dot.slide(ground).unwrap_or(0.0);
+    let along = turn.cos * (rate + S_1 * x.theta_dot) - offset * x.theta_dot * turn.sin;
     let [_, pair @ ..] = restraint::ties(structure.base(), dissipators, *y_s, contact.is_slack);
     let pulled = |tie: &Tie| (tie.force + tie.stiffness * (y - tie.lever * turn.sin)).powi(2) / (2.0 * ties.k_d);
     let of_pair: f64 = if ties.k_d > 0.0 { pair.iter().map(pulled).sum() } else { 0.0 };
     let e = if contact.is_slack { -ties.P_0 / ties.k_t } else { y - y_s };
     let of_tendon = e * (ties.P_0 + 0.5 * ties.k_t * e);
-    mechanical(&x) + y_dot * (0.5 * m_t * y_dot - across) + m_t * g * y + of_points + of_tendon + of_pair
+    let of_slide = x_dot * (0.5 * m_t * x_dot + along);
+    mechanical(&x) + y_dot * (0.5 * m_t * y_dot - across) + of_slide + m_t * g * y + of_points + of_tendon + of_pair
 }

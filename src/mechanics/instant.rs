@@ -123,6 +123,15 @@ impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
         self.s * self.base().B
     }
 
+    /// The same with the accelerations `second`, of the base on ground that gives too.
+    #[inline(always)]
+    pub(crate) fn accelerated(self, second: &Second<N, Q>) -> Self {
+        let x = Instant { theta_ddot: second.theta_ddot, ..self };
+        let Some(ground) = Q::foundation(x.structure) else { return x };
+        let slides = second.u_ddot.slide(ground);
+        Instant { a_g: slides.map_or(x.a_g, |drive| x.a_g + drive), a_v: x.a_v + second.u_ddot.footing(ground).y, ..x }
+    }
+
     /// The coordinates of the base on this `ground`, and their rates.
     #[inline(always)]
     pub(crate) fn footing(&self, ground: &Foundation) -> [Footing<N>; 2] {

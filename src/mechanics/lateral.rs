@@ -30,6 +30,18 @@ pub trait Lateral<N: Number>: Copy {
         Footing::of(std::array::from_fn(|i| self.of(ground.place + i)))
     }
 
+    /// The way of the base over this `ground`, m, if it may slide.
+    #[inline(always)]
+    fn slide(&self, ground: &Foundation) -> Option<N> {
+        ground.slide().map(|place| self.of(place))
+    }
+
+    /// The settlement of point `i` of this `ground` for good, m, or its rate.
+    #[inline(always)]
+    fn settlement(&self, ground: &Foundation, i: usize) -> N {
+        if ground.yields { self.of(ground.settled() + i) } else { N::constant(0.0) }
+    }
+
     /// Of forces, what acts on mass that no mode carries, if there is such: the force, and its moment about the height of the pivots.
     #[inline(always)]
     fn rest(&self) -> Option<[N; 2]> {

@@ -15,6 +15,7 @@
 use crate::mechanics::instant::{Instant, MassPoint, uplift};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
+use crate::mechanics::restraint::Dissipators;
 use crate::numbers::{Number, Ordered};
 use crate::structure::gauge::Gauge;
 use crate::structure::mode::Modes;
@@ -33,6 +34,9 @@ enum Owner {
     Point,
     Edge,
     Tie,
+    Slide,
+    Yield,
+    YieldingPoint,
 }
 
 /// How the largest magnitude of an output is searched.
@@ -143,6 +147,14 @@ outputs! {
         Ground [] Parts, &["y", "theta"];
     contact ["1"] "stiffness of the pressed contact points over the stiffness of all", Ground [] None, &[];
     E_foundation ["J"] "energy that the ground has taken", Ground [] None, &[];
+    x ["m"] "way of the middle of the base over the ground, to the right", Slide [] Component, &[];
+    x_dot ["m/s"] "velocity of the middle of the base over the ground", Slide [] None, &[];
+    slip_path ["m"] "sum of the slips of the base", Slide [] None, &[];
+    E_friction ["J"] "energy that friction has taken", Slide [] None, &[];
+    settled ["m"] "mean settlement of the contact points for good", Yield [] None, &[];
+    tilt ["rad"] "rotation of the contact points for good", Yield [] None, &[];
+    E_plastic ["J"] "energy that settling for good has taken", Yield [] None, &[];
+    s(i: usize) ["m"] "settlement of contact point # for good, from the left", YieldingPoint [] None, &[];
     N_left ["N"] "force of the left outer contact point", Ground [] Parts, CONTACT;
     N_right ["N"] "force of the right outer contact point", Ground [] Parts, CONTACT;
     pressure ["N/m"] "largest pressure under the base: the mean over the outer sixth at each edge, or of an inner point over its strip",
@@ -163,7 +175,7 @@ outputs! {
         Floor [] Linear, ACCELERATION;
     M(i: usize) ["N.m"] "overturning moment at the foot of storey # if all F_t are 0" "M_i",
         Floor [] Linear, ACCELERATION;
-    settled(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground",
+    sunk(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground",
         Edge [] Component, &[];
     lifted(i: usize) ["m"] "height of edge # above the unloaded ground" "left (0) or right (1), or 0 below",
         Edge [] Component, &[];
@@ -175,9 +187,11 @@ outputs! {
 }
 
 use Output::{
-    E_foundation, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio, edge, lifted,
+    E_foundation, E_friction, E_plastic, M, M_t, N, N_left, N_right, V, V_t, a_t, contact, delta_t, drift, drift_ratio,
+    edge,
 };
-use Output::{F_d1, F_d2, P_t, pressure, settled, settlement, theta, theta_dot, u, u_dot, v_t, y};
+use Output::{F_d1, F_d2, P_t, lifted, pressure, settled, settlement, slip_path, sunk, theta, theta_dot, tilt};
+use Output::{u, u_dot, v_t, x_dot, y};
 
 /// The outputs of one mass, each at its place among the columns (0) or peaks (1).
 const fn of_one<const N: usize>(which: usize) -> [Output; N] {
@@ -211,7 +225,12 @@ impl Output {
     /// The outputs of `structure` that are meant, in the order of their rows.
     fn meant(structure: &Structure, is_meant: impl Fn(&OutputRow) -> bool) -> impl Iterator<Item = Output> {
         let points = structure.foundation().map_or(0, |foundation| foundation.points.len());
+        let slides = usize::from(structure.foundation().is_some_and(|of| of.mu_c.is_some()));
+        let yielding = if structure.foundation().is_some_and(|of| of.yields) { points } else { 0 };
         let count = move |of: Owner| match of {
+            Owner::Slide => slides,
+            Owner::Yield => yielding.min(1),
+            Owner::YieldingPoint => yielding,
             Owner::Base => 1,
             Owner::Floor => structure.floors().len(),
             Owner::Ground | Owner::Points | Owner::Tie => points.min(1),
@@ -232,7 +251,7 @@ impl Output {
         let is_one = |of: &Output| of.displaced(structure).is_none_or(|(_, factor)| factor.is_finite());
         let has_inner = structure.foundation().is_some_and(|foundation| foundation.points.len() > 2);
         let is_column = |row: &OutputRow| match row.of {
-            Owner::Base | Owner::Floor | Owner::Ground => true,
+            Owner::Base | Owner::Floor | Owner::Ground | Owner::Slide | Owner::Yield | Owner::YieldingPoint => true,
             Owner::Points | Owner::Point => has_inner,
             Owner::Edge | Owner::Tie => false,
         };
@@ -320,7 +339,7 @@ impl Output {
         let (last, width) = (foundation.points.len() - 1, |[from, to]: [f64; 2]| to - from);
         match self {
             Output::uplift => vec![(lifted(0), 1.0), (lifted(1), 1.0)],
-            settlement => vec![(settled(0), 1.0), (settled(1), 1.0)],
+            settlement => vec![(sunk(0), 1.0), (sunk(1), 1.0)],
             N_left => vec![(N(0), 1.0)],
             N_right => vec![(N(last), 1.0)],
             pressure => {
@@ -378,9 +397,19 @@ impl Output {
     pub(crate) fn of_height(self, base: &Base, Foundation { points, y_s, .. }: &Foundation) -> Option<[f64; 4]> {
         match self {
             N(i) => points.get(i).map(|point| [point.xi, -point.k, -point.c, 0.0]),
-            settled(i) => Some([points[i * (points.len() - 1)].xi, -1.0, 0.0, 0.0]),
+            sunk(i) => Some([points[i * (points.len() - 1)].xi, -1.0, 0.0, 0.0]),
             lifted(i) => Some([[-base.B, base.B][i], 1.0, 0.0, 0.0]),
             P_t => Some([0.0, base.ties.k_t, 0.0, base.ties.P_0 - base.ties.k_t * y_s]),
+            _ => None,
+        }
+    }
+
+    /// The output if it adds up over a motion beside the state.
+    pub(crate) fn added_up(self, &Dissipators { slip, friction, settling, .. }: &Dissipators) -> Option<f64> {
+        match self {
+            slip_path => Some(slip),
+            E_friction => Some(friction),
+            E_plastic => Some(settling),
             _ => None,
         }
     }
@@ -391,14 +420,21 @@ impl Output {
         match self {
             y => footing.y,
             E_foundation => footing.taken,
-            lifted(_) | settled(_) | P_t => {
+            lifted(_) | sunk(_) | P_t => {
                 let [xi, k, _, offset] = self.of_height(x.base(), foundation).expect("it is of a height");
                 footing.height(xi) * k + K::constant(offset)
             }
+            N(i) if x.contact.yields(i) => K::constant(points[i].q),
             N(i) if x.contact.is_pressed(i) => {
                 let [e, rate] = [footing, rates].map(|of| of.height(points[i].xi));
+                let e = if foundation.yields { e + x.u.settlement(foundation, i) } else { e };
                 -(e * points[i].k + rate * points[i].c)
             }
+            Output::x => x.u.slide(foundation).unwrap_or(K::constant(f64::NAN)),
+            x_dot => x.u_dot.slide(foundation).unwrap_or(K::constant(f64::NAN)),
+            Output::s(i) => x.u.settlement(foundation, i),
+            settled => foundation.residual(|i| x.u.settlement(foundation, i), 0),
+            tilt => foundation.residual(|i| x.u.settlement(foundation, i), 1),
             edge(side) => {
                 let each = foundation.of_edge(side, x.base().B).into_iter();
                 let each = each.map(|(i, factor)| N(i).on_ground(x, foundation) * factor);
@@ -411,7 +447,9 @@ impl Output {
             }
             N_left => N(0).on_ground(x, foundation),
             N_right => N(points.len() - 1).on_ground(x, foundation),
-            Output::uplift | settlement | pressure | F_d1 | F_d2 => K::constant(f64::NAN),
+            Output::uplift | settlement | pressure | F_d1 | F_d2 | slip_path | E_friction | E_plastic => {
+                K::constant(f64::NAN)
+            }
             _ => unreachable!("{self:?} has the same formula on all ground"),
         }
     }
@@ -421,7 +459,7 @@ impl Output {
     pub(crate) fn of<K: Ordered, Q: Lateral<K>>(self, x: &Instant<K, Q>) -> K {
         match self {
             _ if Q::foundation(x.structure).is_none() => self.smooth(x),
-            lifted(_) | settled(_) | P_t => self.smooth(x).positive(),
+            lifted(_) | sunk(_) | P_t => self.smooth(x).positive(),
             _ if self.search() == Search::Parts => {
                 let parts = self.parts(x.structure).into_iter();
                 parts.map(|(part, factor)| part.of(x) * factor).reduce(K::larger).expect("it has parts")
@@ -435,6 +473,10 @@ impl Output {
     #[inline]
     pub(crate) fn smooth<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>) -> K {
         let floor = |i: usize| &x.structure.floors()[i];
+        let plus_slide = |of: &Q, value: K| match Q::foundation(x.structure).and_then(|ground| of.slide(ground)) {
+            Some(slid) => value + slid,
+            None => value,
+        };
         let place = |i| MassPoint { share: 1.0, height: floor(i).height, u: x.u.weighed(&floor(i).shape) };
         match self {
             theta => x.theta,
@@ -446,8 +488,11 @@ impl Output {
                 x.u.weighed(shape) * factor
             }
             u_dot(i) => x.u_dot.weighed(&floor(i).shape),
-            delta_t(i) => place(i).right(x.pivot(), &x.turn),
-            v_t(i) => place(i).rate_of_right(x.pivot(), &x.turn, [x.u_dot.weighed(&floor(i).shape), x.theta_dot]),
+            delta_t(i) => plus_slide(&x.u, place(i).right(x.pivot(), &x.turn)),
+            v_t(i) => {
+                let rates = [x.u_dot.weighed(&floor(i).shape), x.theta_dot];
+                plus_slide(&x.u_dot, place(i).rate_of_right(x.pivot(), &x.turn, rates))
+            }
             V_t | M_t | a_t(_) | V(_) | M(_) => {
                 self.gauge(x.structure).expect("a gauge measures accelerations and forces").at(x)
             }
@@ -460,8 +505,16 @@ impl Output {
             | N_right
             | pressure
             | N(_)
-            | settled(_)
+            | sunk(_)
             | lifted(_)
+            | Output::x
+            | x_dot
+            | slip_path
+            | E_friction
+            | settled
+            | tilt
+            | E_plastic
+            | Output::s(_)
             | edge(_)
             | P_t
             | F_d1

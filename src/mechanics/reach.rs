@@ -236,7 +236,11 @@ impl Reach {
         let Reach { a_g, push, .. } = self;
         if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure)) {
             let base = structure.base();
-            let bound = |of: Output| Some(most_of_height(arc, foundation, of.of_height(base, foundation)?));
+            let bound = |of: Output| {
+                let point = if let Output::N(i) = of { Some(i).filter(|_| foundation.yields) } else { None };
+                let most = most_of_height(arc, foundation, of.of_height(base, foundation)?, point);
+                Some(point.map_or(most, |i| most.min(foundation.points[i].q)))
+            };
             let and = |sum: Option<f64>, (i, factor)| Some(sum.unwrap_or(0.0) + bound(Output::N(i))? * factor);
             let edge = if let Output::edge(side) = output { foundation.of_edge(side, base.B) } else { Vec::new() };
             if let Some(bound) = edge.into_iter().fold(bound(output), and) {
@@ -250,7 +254,8 @@ impl Reach {
             (None, _) => self.bound_together(most),
             (Some(_), Some(arc)) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
-                elastic() + gauge.turning(structure.base(), arc, most)
+                let place = Q::foundation(structure).and_then(Foundation::slide);
+                elastic() + gauge.turning(structure.base(), arc, most, place)
             }
             (Some(a_g), None) if most.theta == 0.0 => elastic() + a_g * most.a_g,
             _ => f64::INFINITY,
@@ -280,7 +285,8 @@ impl Reach {
 }
 
 impl Gauge {
-    /// Bound of the magnitude of the terms of [`Gauge::at`] in θ and in the ground acceleration over a polynomial, within `most`.
+    /// Bound of the magnitude of the terms of [`Gauge::at`] in θ and in the acceleration of the base, which has `slide` among its coordinates if it
+    /// may slide, over a polynomial, within `most`.
     /// They are added up before they are bounded, because θ̈ opposes the ground acceleration. The rest of b is at most
     /// B θ̇² + |a_g| θ²/2 + |a_v| |θ|, on ground that gives without B θ̇².
     pub(crate) fn turning<Q: Coordinates>(
@@ -288,12 +294,16 @@ impl Gauge {
         base: &Base,
         (arc, a_g): (&Arc<Q>, Ramp),
         most: &Magnitudes<Q>,
+        slide: Option<usize>,
     ) -> f64 {
         let ([height, share], mut linear) = (self.left, ZERO);
         let tilt = base.g * (self.weight - share);
         for k in 0..=arc.order {
             let theta_ddot = if k < arc.order { ORDERS[k + 1] * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
             linear[k] = height * theta_ddot + tilt * arc.theta[k];
+            if let Some(place) = slide.filter(|_| k < arc.order) {
+                linear[k] += share * ORDERS[k + 1] * arc.u_dot[k + 1].of(place) / arc.span;
+            }
         }
         linear[0] += share * a_g.value;
         linear[1] += share * a_g.slope * arc.span;
@@ -305,12 +315,20 @@ impl Gauge {
     }
 }
 
-/// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives. y and ξ sin θ cancel in e: their series
+/// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives, above its settlement if it is of a `point`. y and ξ sin θ cancel in e: their series
 /// are added before they are bounded.
-fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, ground: &Foundation, [xi, k, c, offset]: [f64; 4]) -> f64 {
+fn most_of_height<Q: Coordinates>(
+    arc: &Arc<Q>,
+    ground: &Foundation,
+    [xi, k, c, offset]: [f64; 4],
+    point: Option<usize>,
+) -> f64 {
     let mut series = ZERO;
     let height = |q: &Q| q.footing(ground).height(xi);
     series.iter_mut().zip(arc.used(&arc.u)).for_each(|(of, u)| *of = k * height(u));
+    if let Some(i) = point {
+        series.iter_mut().zip(arc.used(&arc.u)).for_each(|(of, u)| *of += k * u.settlement(ground, i));
+    }
     if c != 0.0 {
         series.iter_mut().zip(arc.used(&arc.u_dot)).for_each(|(of, u_dot)| *of += c * height(u_dot));
     }

@@ -94,11 +94,13 @@ impl<N: Number> Acceleration<N> {
     }
 }
 
-/// The acceleration of weights, g + a_v, m/s²; on ground that gives the base adds its own, ÿ.
+/// The acceleration of the base, a_g, and of weights, g + a_v, m/s²; on ground that gives the base adds its own, ẍ and ÿ.
 #[inline(always)]
-fn weight<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
+fn of_ground<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> [N; 2] {
     let weight = x.a_v + N::constant(x.base().g);
-    Q::foundation(x.structure).map_or(weight, |ground| weight + second.u_ddot.footing(ground).y)
+    let Some(ground) = Q::foundation(x.structure) else { return [x.a_g, weight] };
+    let slides = second.u_ddot.slide(ground);
+    [slides.map_or(x.a_g, |drive| x.a_g + drive), weight + second.u_ddot.footing(ground).y]
 }
 
 /// R_h and R_v, N.
@@ -106,7 +108,8 @@ fn weight<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) ->
 pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> [N; 2] {
     let &Base { m_t, m0, S_res, .. } = x.base();
     let base = Acceleration::of_base(x, second);
-    let (mut along, mut across, mut push) = (base.along * m0, base.across * m0, -(x.a_g * m_t));
+    let [a_g, weight] = of_ground(x, second);
+    let (mut along, mut across, mut push) = (base.along * m0, base.across * m0, -(a_g * m_t));
     if S_res != 0.0 {
         along = along + second.theta_ddot * S_res;
         across = across - x.theta_dot * x.theta_dot * S_res;
@@ -120,10 +123,7 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
     if let Some([force, _]) = x.F_t.rest() {
         push = push + force;
     }
-    [
-        push - along * x.turn.cos - across * x.turn.sin,
-        weight(x, second) * m_t + across * x.turn.cos - along * x.turn.sin,
-    ]
+    [push - along * x.turn.cos - across * x.turn.sin, weight * m_t + across * x.turn.cos - along * x.turn.sin]
 }
 
 /// The forces to the right and downwards less the `rate` of the momentum, given `along` u and across.
@@ -142,7 +142,7 @@ pub(crate) fn less_momentum<N: Number>(
 #[inline(always)]
 pub(crate) fn moment<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
     let &Base { m0, S_res, J0, .. } = x.base();
-    let ground = [x.a_g, weight(x, second)];
+    let ground = of_ground(x, second);
     let base = Acceleration::of_base(x, second);
     let [right, down] = base.force(&x.turn, ground, m0);
     let mut moment = x.turn.sin * x.pivot() * right + x.turn.versine * x.pivot() * down;

@@ -23,7 +23,7 @@ use crate::series::terms::Terms;
 use crate::{Base, Foundation, Side, Ties};
 use serde::{Deserialize, Serialize};
 
-/// The state of the dissipators and the energy they have taken. The first is at +ξ_d, the second at −ξ_d.
+/// The state of the dissipators and the energy that they, friction and the ground have taken. The first is at +ξ_d, the second at −ξ_d.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dissipators {
     /// Plastic elongations e_p, m.
@@ -34,6 +34,12 @@ pub struct Dissipators {
     pub viscous: f64,
     /// Energy that the elastoplastic dissipators have taken, J.
     pub hysteretic: f64,
+    /// Sum of the slips of a base that may slide, m, and the energy that friction has taken, J.
+    pub slip: f64,
+    #[allow(missing_docs)]
+    pub friction: f64,
+    /// Energy that the ground has taken by settling for good, J.
+    pub settling: f64,
 }
 
 /// Forces of the restraints, N; a force that pulls is positive.
@@ -314,7 +320,15 @@ pub fn centring_moments(base: &Base) -> [f64; 2] {
 
 impl Dissipators {
     /// The dissipators of a structure that has not moved yet.
-    pub const NEW: Dissipators = Dissipators { plastic: [0.0; 2], yields: [0; 2], viscous: 0.0, hysteretic: 0.0 };
+    pub const NEW: Dissipators = Dissipators {
+        plastic: [0.0; 2],
+        yields: [0; 2],
+        viscous: 0.0,
+        hysteretic: 0.0,
+        slip: 0.0,
+        friction: 0.0,
+        settling: 0.0,
+    };
 
     /// The dissipators after a transition to rocking about a side at a rate θ̇ (rad/s), or to rest in contact (none). A dissipator
     /// that keeps moving the sign it yielded keeps yielding.

@@ -78,9 +78,42 @@ pub struct PressedPoints {
     pub points: u8,
     /// Whether the tendon is slack.
     pub is_slack: bool,
+    /// A bit for each contact point that yields.
+    pub yields: u32,
+    /// The friction of a base that may slide.
+    pub friction: Friction,
+}
+
+/// The friction under a base on ground that gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Friction {
+    /// The base sticks, or is held.
+    #[default]
+    Sticks,
+    /// The base slides to this side.
+    Slides(Side),
+    /// The base, which may slide, touches nothing.
+    Free,
+}
+
+impl Friction {
+    /// The sign of the velocity over the ground; 0 if the base sticks or flies.
+    pub fn sign(self) -> f64 {
+        if let Friction::Slides(side) = self { side.sign() } else { 0.0 }
+    }
 }
 
 impl PressedPoints {
+    /// Nothing is pressed.
+    pub const NONE: PressedPoints =
+        PressedPoints { pressed: 0, points: 0, is_slack: false, yields: 0, friction: Friction::Sticks };
+
+    /// Whether point `i` yields.
+    #[inline]
+    pub fn yields(self, i: usize) -> bool {
+        self.yields >> i & 1 == 1
+    }
+
     /// Whether point `i` is pressed.
     #[inline]
     pub fn is_pressed(self, i: usize) -> bool {
@@ -116,7 +149,7 @@ pub struct Properties {
 
 impl Phase {
     /// No point of ground that gives is pressed.
-    pub const FLIGHT: Phase = Phase::OnGround(PressedPoints { pressed: 0, points: 0, is_slack: false });
+    pub const FLIGHT: Phase = Phase::OnGround(PressedPoints::NONE);
 
     /// The phases that are [shown](Phase::shown), in the order in which the FMU numbers them; both sides of overturning are one.
     pub const SHOWN: [Phase; 5] = [
@@ -359,7 +392,7 @@ mod tests {
 
     #[test]
     fn a_shown_phase_is_shown_as_it_is() {
-        let on = |pressed, points| Phase::OnGround(PressedPoints { pressed, points, is_slack: false });
+        let on = |pressed, points| Phase::OnGround(PressedPoints { pressed, points, ..PressedPoints::NONE });
         let sides =
             [Side::Left, Side::Right].into_iter().flat_map(|side| [Phase::Rocking(side), Phase::Overturned(side)]);
         for phase in sides.chain([Phase::FullContact, Phase::FLIGHT, on(0, 2), on(1, 2), on(2, 2), on(3, 2)]) {

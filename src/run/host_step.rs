@@ -172,7 +172,10 @@ impl<Q: Coordinates> Engine<Q> {
             let mut arc = Arc::default();
             level.series(*phase, &start, &mut arc);
             let side = now.motion.side();
-            return first(watched, &mut Step { level: *level, side, contact, start: &start, arc: &arc, reach: 0.0 });
+            return first(
+                watched,
+                &mut Step { level: *level, side, contact, start: &start, arc: &arc, reach: 0.0, is_cut: false },
+            );
         }
         let mut guards = watched.guards.iter().enumerate();
         guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, branch: of.closed(&now)? }))

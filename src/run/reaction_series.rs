@@ -27,7 +27,10 @@ pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms>
     }
     let along = sum(&arc.u_dot) + over.theta_dot * structure.body().S_1;
     let across = (Terms::constant(over.pivot() * base.m_t) - offset) * over.theta_dot;
-    let push = ramp(&|load| structure.pushes(load)[0] - base.m_t * load.a_g);
+    let mut push = ramp(&|load| structure.pushes(load)[0] - base.m_t * load.a_g);
+    if let Some(drive) = expansion.drive() {
+        push = push - drive * base.m_t;
+    }
     let forces = [push, weight * base.m_t];
     let [R_h, R_v] = less_momentum(forces, [along, across], &over.turn, |momentum| momentum.slope(arc.span));
     let R_m = match phase.properties().is_down {

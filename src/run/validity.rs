@@ -290,6 +290,9 @@ impl Validity {
             | TransitionKind::Unloading(_)
             | TransitionKind::Touch(_)
             | TransitionKind::Release(_)
+            | TransitionKind::Settles(_)
+            | TransitionKind::Holds(_)
+            | TransitionKind::Friction(_)
             | TransitionKind::Taut
             | TransitionKind::Slack => return,
         };

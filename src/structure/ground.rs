@@ -9,6 +9,9 @@
 //!
 //! y is the height of the middle of the base above the unloaded ground. The middle moves vertically only. At rest all points are
 //! pressed, and y is y_s = −(m_t g + P_0)/Σ k. The points take the place of uplift, impact and restitution.
+//!
+//! With a coefficient of friction μ_c the middle slides by x, too. Points with a capacity q yield in series with spring and dashpot: they
+//! settle by s for good, and e = y − ξ sin θ + s,   N = min(f, q)                                          (S5, S6)
 
 use crate::numbers::Number;
 use crate::series::bisection::last_where;
@@ -35,6 +38,12 @@ pub struct Ground {
     pub kr_ratio: Option<f64>,
     /// Rotational stiffness of all points K_r, N·m/rad.
     pub k_r: Option<f64>,
+    /// Coefficient of friction of the base; the middle is held if none is given.
+    pub mu_c: Option<f64>,
+    /// Static reserve: every point yields at this multiple of its force at rest; elastic points if none is given. Or else `q_u`.
+    pub fs: Option<f64>,
+    /// Capacity of each point, N.
+    pub q_u: Vec<f64>,
     /// The points themselves, in the place of the numbers above: places (m), stiffnesses (N/m) and dampings (N·s/m), from left to right.
     pub xi: Vec<f64>,
     #[allow(missing_docs)]
@@ -43,13 +52,15 @@ pub struct Ground {
     pub c: Vec<f64>,
 }
 
-/// A contact point: its place from the middle of the base to the right (m), its stiffness (N/m) and its damping (N·s/m).
+/// A contact point: its place from the middle of the base to the right (m), its stiffness (N/m), its damping (N·s/m) and its capacity (N),
+/// which is infinite if the point is elastic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct ContactPoint {
     pub xi: f64,
     pub k: f64,
     pub c: f64,
+    pub q: f64,
 }
 
 /// The contact points under a structure.
@@ -62,6 +73,10 @@ pub struct Foundation {
     pub ground: Ground,
     /// y at rest y_s, m.
     pub y_s: f64,
+    /// Coefficient of friction of a base that may slide.
+    pub mu_c: Option<f64>,
+    /// Whether the points may yield.
+    pub yields: bool,
     /// The place of the [`Footing`] among the lateral coordinates, after the modes.
     pub(crate) place: usize,
 }
@@ -101,7 +116,8 @@ impl<N: Number> Footing<N> {
 }
 
 /// The names of the numbers of [`Ground`].
-pub const NAMES: [&str; 10] = ["f_v", "k_v", "zeta_v", "c_v", "n_points", "kr_ratio", "k_r", "xi", "k", "c"];
+pub const NAMES: [&str; 13] =
+    ["f_v", "k_v", "zeta_v", "c_v", "n_points", "kr_ratio", "k_r", "xi", "k", "c", "mu_c", "fs", "q_u"];
 
 /// The most contact points.
 pub const MOST_POINTS: usize = 21;
@@ -122,6 +138,14 @@ const C_V: Quantity<f64> = Quantity::limit("c_v", "N.s/m", [0.0, 1e18], "vertica
 const KR_RATIO: Quantity<f64> =
     Quantity::limit("kr_ratio", "1", [0.0, 1.0], "rotational stiffness of the ground over k_v B^2, with two points 1");
 const K_R: Quantity<f64> = Quantity::limit("k_r", "N.m/rad", [1e-6, 1e22], "rotational stiffness of the ground");
+const MU_C: Quantity<f64> = Quantity::limit("mu_c", "1", [0.0, 2.0], "coefficient of friction of the base");
+const FS: Quantity<f64> = Quantity::limit("fs", "1", [1.0, 100.0], "capacity of the ground over its load at rest");
+
+/// Least damping ratio of the bounce of points that yield, if it is not 0: the ground follows a yielding point in the time 2 ζ_v/ω_v.
+const LEAST_ZETA: f64 = 0.02;
+
+/// Part of m_t below which a base without inertia slides.
+const NO_MASS: f64 = 1e-9;
 
 impl Ground {
     /// The same ground with numbers in SI units.
@@ -130,16 +154,22 @@ impl Ground {
         self.k_v.iter_mut().chain(&mut self.k).for_each(to_si("N/m"));
         self.c_v.iter_mut().chain(&mut self.c).for_each(to_si("N.s/m"));
         self.k_r.iter_mut().for_each(to_si("N.m/rad"));
+        self.q_u.iter_mut().for_each(to_si("N"));
         self
     }
 
-    /// Shows each number of evenly spaced points that can have another value, defaults too, and takes the value that is left there.
+    /// Shows each number that can have another value, those of evenly spaced points and defaults too, and takes the value that is left there.
     pub(crate) fn each(&mut self, mut see: impl FnMut(&Quantity<f64>, &mut f64)) {
-        if !self.xi.is_empty() || self.is_rigid() {
+        if self.is_rigid() {
             return;
         }
         let mut one_of =
             |of: &Quantity<f64>, value: &mut Option<f64>| value.iter_mut().for_each(|value| see(of, value));
+        one_of(&MU_C, &mut self.mu_c);
+        one_of(&FS, &mut self.fs);
+        if !self.xi.is_empty() {
+            return;
+        }
         one_of(&F_V, &mut self.f_v);
         one_of(&K_V, &mut self.k_v);
         if self.c_v.is_none() {
@@ -172,10 +202,18 @@ impl Ground {
             ("kr_ratio", "k_r", kr_ratio.zip(k_r)),
             ("f_v", "xi", f_v.zip(list)),
             ("k_v", "xi", k_v.zip(list)),
+            ("fs", "q_u", self.fs.zip(self.q_u.first().copied())),
         ] {
             ensure(both.is_none(), || format!("{one} and {other} are both given: leave one of them out"))?;
         }
-        for (limit, value) in [(F_V, f_v.filter(|_| !self.is_rigid())), (K_V, k_v), (ZETA_V, zeta_v), (C_V, c_v)] {
+        for (limit, value) in [
+            (F_V, f_v.filter(|_| !self.is_rigid())),
+            (K_V, k_v),
+            (ZETA_V, zeta_v),
+            (C_V, c_v),
+            (MU_C, self.mu_c),
+            (FS, self.fs),
+        ] {
             value.map_or(Ok(()), |value| limit.check(value))?;
         }
         let n = n_points.unwrap_or(2.0);
@@ -188,9 +226,12 @@ impl Ground {
             ensure(counts == [counts[0]; 3] && (2..=MOST_POINTS).contains(&counts[0]), || {
                 format!("xi, k and c have {counts:?} numbers: give 2 to {MOST_POINTS} of each, one for each point")
             })?;
-            return Ok((0..xi.len()).map(|i| ContactPoint { xi: xi[i], k: k[i], c: c[i] }).collect());
+            return Ok((0..xi.len()).map(|i| ContactPoint { xi: xi[i], k: k[i], c: c[i], q: f64::INFINITY }).collect());
         }
         if self.is_rigid() {
+            ensure(self.mu_c.is_none() && self.fs.is_none() && self.q_u.is_empty(), || {
+                "mu_c, fs and q_u are of ground that gives, and f_v = 0 Hz is rigid ground: give f_v or k_v".into()
+            })?;
             return Ok(Vec::new());
         }
         let needed = |units: Units| {
@@ -211,7 +252,8 @@ impl Ground {
         let k_int = if n == 2 { 0.0 } else { K_z * B * B * (1.0 - ratio) / (most - inner) };
         let k_end = (K_z - (n - 2) as f64 * k_int) / 2.0;
         let k = |i: usize| if i == 0 || i == n - 1 { k_end } else { k_int };
-        Ok((0..n).map(|i| ContactPoint { xi: xi(i), k: k(i), c: tau * k(i) }).filter(|point| point.k > 0.0).collect())
+        let point = |i: usize| ContactPoint { xi: xi(i), k: k(i), c: tau * k(i), q: f64::INFINITY };
+        Ok((0..n).map(point).filter(|point| point.k > 0.0).collect())
     }
 }
 
@@ -229,7 +271,7 @@ impl Foundation {
             return Ok(None);
         }
         let is_close = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
-        for (i, (&ContactPoint { xi, k, c }, mirrored)) in points.iter().zip(points.iter().rev()).enumerate() {
+        for (i, (&ContactPoint { xi, k, c, .. }, mirrored)) in points.iter().zip(points.iter().rev()).enumerate() {
             let (is_ordered, is_under) = (i == 0 || points[i - 1].xi < xi, xi.abs() <= B * (1.0 + SAME));
             let is_symmetric =
                 (xi + mirrored.xi).abs() <= SAME * B && is_close(k, mirrored.k) && is_close(c, mirrored.c);
@@ -251,8 +293,16 @@ impl Foundation {
                 "c_ratio = {c_ratio} has no meaning on ground that gives, where nothing rocks about an edge: set c_ratio to 1"
             )
         })?;
-        let mut foundation = Foundation { points, ground: ground.clone(), y_s: 0.0, place: modes.len() };
+        let (mu_c, yields) = (ground.mu_c, ground.fs.is_some() || !ground.q_u.is_empty());
+        let mut foundation = Foundation { points, ground: ground.clone(), y_s: 0.0, mu_c, yields, place: modes.len() };
         foundation.y_s = -(m_t * g + P_0) / foundation.sum(0);
+        foundation.take_capacities(base)?;
+        ensure_in(mu_c.is_none() || free_mass(base, modes) > NO_MASS * m_t, |units| {
+            format!(
+                "mu_c is given, and all mass is in the modes, m0 = {}: the base would slide without inertia, give the base a mass",
+                units.show(base.m0, "kg")
+            )
+        })?;
         let [K_r, least] = [foundation.sum(2), least_stiffness(base, body, modes)];
         ensure_in(K_r > least, |units| {
             let [K_r, least] = [K_r, least].map(|of| units.show(of, "N.m/rad"));
@@ -267,6 +317,63 @@ impl Foundation {
             )
         })?;
         Ok(Some(foundation))
+    }
+
+    /// Gives the points their capacities.
+    fn take_capacities(&mut self, base: &Base) -> Result<(), Refused> {
+        if !self.yields {
+            return Ok(());
+        }
+        let (count, given, zeta) = (self.points.len(), self.ground.q_u.len(), self.zeta_v(base));
+        ensure(given == 0 || given == count, || {
+            format!("q_u has {given} numbers, and there are {count} points: give one for each, from left to right")
+        })?;
+        ensure(zeta == 0.0 || zeta >= LEAST_ZETA, || {
+            format!("zeta_v = {zeta} is too small for points that yield: give 0, or {LEAST_ZETA} or more")
+        })?;
+        for i in 0..count {
+            let at_rest = -self.points[i].k * self.y_s;
+            let q = self.ground.fs.map_or_else(|| self.ground.q_u[i], |fs| fs * at_rest);
+            let mirrored = self.ground.q_u.get(count - 1 - i).map_or(q, |q| *q);
+            let name = || if given == 0 { "fs".into() } else { format!("q_u[{}]", i + 1) };
+            ensure_in(q.is_finite() && q > at_rest, |units| {
+                let [q, at_rest] = [q, at_rest].map(|of| units.show(of, "N"));
+                format!("{}: it sinks at rest: the point can carry {q}, and carries {at_rest} at rest", name())
+            })?;
+            ensure((q - mirrored).abs() <= SAME * q, || {
+                format!("{} and q_u[{}] differ: the points must be symmetric about the middle", name(), count - i)
+            })?;
+            self.points[i].q = q;
+        }
+        Ok(())
+    }
+
+    /// Number of the coordinates beside those of the modes.
+    pub(crate) fn coordinates(&self) -> usize {
+        self.settled() + if self.yields { self.points.len() } else { 0 } - self.place
+    }
+
+    /// The place of x, the way of the middle to the right, among the lateral coordinates of a base that may slide.
+    pub(crate) fn slide(&self) -> Option<usize> {
+        self.mu_c.map(|_| self.place + FOOTING)
+    }
+
+    /// The place of the settlement of the first point.
+    pub(crate) fn settled(&self) -> usize {
+        self.place + FOOTING + usize::from(self.mu_c.is_some())
+    }
+
+    /// Whether the base may slide, or points may yield.
+    pub(crate) fn may_stay_moved(&self) -> bool {
+        self.mu_c.is_some() || self.yields
+    }
+
+    /// Σ k ξⁿ s of settlements s for good, over the same sum without s but of ξ²ⁿ: the mean settlement for n = 0, m, and the tilt for n = 1,
+    /// rad.
+    pub(crate) fn residual<N: Number>(&self, s: impl Fn(usize) -> N, power: i32) -> N {
+        let part = |(i, point): (usize, &ContactPoint)| s(i) * (point.k * point.xi.powi(power));
+        let sum = self.points.iter().enumerate().map(part).reduce(|sum, of| sum + of);
+        sum.unwrap_or(N::constant(0.0)) * (1.0 / self.sum(2 * power))
     }
 
     /// Both ends of the strip of a base of half-width `B` (m) that point `i` stands for, m: halfway to the next points, or an edge.
@@ -312,6 +419,16 @@ impl Foundation {
         highest.max(of_points.min((dashpots(0) / base.m_t).max(turning / base.J0 + of_modes)))
     }
 
+    /// The same for a base that slides with these modes on the mass m' that no mode carries, given this bound `held` of a base that is held:
+    /// Ω² gains Σ Γ² ω²/m', Ω the rate Σ 2 ζ ω Γ²/m'.
+    pub(crate) fn fastest_sliding(&self, held: f64, base: &Base, modes: &[Mode]) -> f64 {
+        let free = free_mass(base, modes);
+        let sum = |of: fn(&Mode) -> f64| {
+            modes.iter().map(|mode| mode.gamma * mode.share * of(mode) / mode.mass).sum::<f64>() / free
+        };
+        (held * held + sum(|mode| mode.stiffness)).sqrt().max(sum(|mode| mode.damping))
+    }
+
     /// The circular frequencies of small motions in full contact without damping, rad/s, lowest first: the bounce √(K_z/m_t), and the
     /// roots λ = ω² of
     ///
@@ -353,9 +470,22 @@ impl Foundation {
     /// Σ k max(0, ξ sin θ − y) = m_t g + max(0, P_0 + k_t (y − y_s))
     /// ```
     ///
-    /// and the slope of y over sin θ there.
+    /// and the slope of y over sin θ there. A point carries no more than its capacity.
     pub(crate) fn held_at(&self, sin: f64, base: &Base) -> [f64; 2] {
         let &Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. } = base;
+        if self.yields {
+            let force = |point: &ContactPoint, y: f64| (point.k * (point.xi * sin - y)).clamp(0.0, point.q);
+            let carried = |y: f64| self.points.iter().map(|point| force(point, y)).sum::<f64>();
+            let pull = |y: f64| (P_0 + k_t * (y - self.y_s)).max(0.0);
+            let highest = self.points[0].xi.abs() * sin.abs();
+            let lowest = (1..1000).map(|i| highest + f64::from(i) * self.y_s);
+            let lowest = lowest.into_iter().find(|y| carried(*y) >= m_t * g + pull(*y)).unwrap_or(highest);
+            let y = last_where(lowest, highest, |y| carried(y) >= m_t * g + pull(y));
+            let elastic = self.points.iter().filter(|point| point.xi * sin > y && force(point, y) < point.q);
+            let hold = if pull(y) > 0.0 { k_t } else { 0.0 };
+            let [K_0, K_1] = elastic.fold([hold, 0.0], |[a, b], point| [a + point.k, b + point.k * point.xi]);
+            return [y, if K_0 > 0.0 { K_1 / K_0 } else { 0.0 }];
+        }
         let mut y = self.y_s - self.points[0].xi.abs() * sin.abs();
         let mut slope = 0.0;
         // a step of Newton's method is exact once the pressed points are known
@@ -391,6 +521,11 @@ impl Foundation {
     pub(crate) fn first_release(&self) -> f64 {
         libm::asin((self.y_s / self.points[0].xi).min(1.0))
     }
+}
+
+/// m', the mass that no mode carries sideways, kg.
+pub(crate) fn free_mass(base: &Base, modes: &[Mode]) -> f64 {
+    base.m_t - modes.iter().map(|mode| mode.gamma * mode.share).sum::<f64>()
 }
 
 /// The rotational stiffness of the ground at which a structure at rest falls over, g S_1 + Σ (g Γ)²/(μ ω²), N·m/rad.

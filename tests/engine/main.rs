@@ -15,6 +15,7 @@ mod reactions;
 mod restrained;
 mod rooms;
 mod runs;
+mod slipping;
 mod tolerance;
 mod top_force;
 mod validity;
