@@ -16,6 +16,7 @@ pub mod peak_watch;
 pub mod peaks;
 mod reaction_series;
 pub mod record;
+pub mod residual;
 mod samples;
 pub mod validity;
 

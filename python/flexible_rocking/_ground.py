@@ -20,6 +20,9 @@ class _Numbers(TypedDict, total=False):
     xi: Sequence[float]
     k: Sequence[float]
     c: Sequence[float]
+    mu_c: float
+    fs: float
+    q_u: Sequence[float]
 
 
 class Ground(dict[str, Any]):
@@ -30,6 +33,8 @@ class Ground(dict[str, Any]):
     n_points: 2 (the edges) to 21, equally spaced. kr_ratio: K_r/(k_v B^2), by default 1 for two points and 1/3 (a uniform bed) for
     more, or else k_r: rotational stiffness, N.m/rad.
     xi, k, c: the points themselves in the place of all these, from left to right: places (m), stiffnesses (N/m), dampings (N.s/m).
+    mu_c: coefficient of friction of a base that may slide; without it the middle of the base is held.
+    fs: every point yields at fs times its force at rest, or else q_u: capacities of the points, N. Points settle for good by then.
     The points take the place of impacts: r has no effect. The names of the structure stay the same.
     Raises ValueError for an unknown name.
     """

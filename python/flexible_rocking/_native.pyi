@@ -158,6 +158,7 @@ class Run:
     detail: Final[str]
     tolerance: Final[float]
     peaks: Final[dict[str, Peak]]
+    residuals: Final[dict[str, float]]
     overturned: Final[bool | None]
     ending: Final[str]
     start: Final[float]; "s"

@@ -79,6 +79,13 @@ impl PyRun {
         Ok(named)
     }
 
+    /// What is left at the end on ground that slips and yields, by name. With mu_c: x_end (m), slip_path (m), E_friction (J); with fs or
+    /// q_u: theta_res (rad) and settlement_res (m) at rest on the settled ground, tilt (rad), settled (m), E_plastic (J). NaN: no rest.
+    #[getter]
+    fn residuals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.found.residuals.iter().map(|of| (&*of.name, of.value)).into_py_dict(py)
+    }
+
     /// Every transition in the order of time, each a Transition: a list, with to_pandas().
     #[getter]
     fn transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

@@ -16,7 +16,7 @@ use rocking_report::run::Watcher;
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
 use rocking_sweep::map::{Axis, GridPlace, HEADINGS, MAX_REFINEMENTS, Map, MapPoint};
-use rocking_sweep::outcome::{Limit, Measure};
+use rocking_sweep::outcome::{Limit, Measure, of_column};
 use rocking_sweep::plan::{NamedRecord, Plan, Population, measure};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::row_file::{Program, do_runs, heading, line, name_and_unit};
@@ -247,10 +247,10 @@ impl PyCurve {
 /// known, and how many exceed the limit.
 type BinRow = (f64, f64, f64, usize, usize, usize);
 
-/// The measures of the peaks among the columns of a sweep's table, and these columns.
+/// The measures of the peaks, and of what is left at the end, among the columns of a sweep's table, and these columns.
 fn measures(columns: Vec<String>) -> (Vec<Measure>, Vec<String>) {
     let measure = |heading: String| {
-        let (name, unit) = name_and_unit(heading.strip_prefix("peak_")?);
+        let (name, unit) = name_and_unit(of_column(&heading)?);
         Some(((name.to_owned(), unit.to_owned()), heading))
     };
     columns.into_iter().filter_map(measure).unzip()

@@ -3,7 +3,7 @@ use rocking::digits::significant;
 use serde::{Serialize, Serializer};
 
 /// One value, its unit (`1` for a ratio) and the equation of the paper that defines it.
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 #[allow(missing_docs)]
 pub struct NamedValue {
     pub name: String,

@@ -1,5 +1,6 @@
 //! A run of a structure of one mass or of many: what every door prints, writes and draws comes from here.
 
+use crate::quantities::NamedValue;
 use crate::tables::{AFTER, Line, line};
 use anyhow::ensure;
 use rocking::engine::motion::Work;
@@ -8,6 +9,7 @@ use rocking::mechanics::restraint::Dissipators;
 use rocking::run::curve;
 use rocking::run::peaks::{Peak, Peaks};
 use rocking::run::record::Record;
+use rocking::run::residual::Residual;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
 use rocking::{Modes, Output, Phase, Run, State, Structure, Transition, TransitionKind, Watch};
@@ -51,6 +53,9 @@ pub struct RunReport {
     pub fall: Option<f64>,
     /// All peaks, the peak of the ground first; if the structure overturns, those before it falls.
     pub peaks: Vec<NamedPeak>,
+    /// What is left at the end on ground that slips and yields.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub residuals: Vec<NamedValue>,
     /// Of a structure with dissipators.
     #[serde(flatten)]
     pub(crate) taken: Option<Dissipated>,
@@ -321,6 +326,9 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::RunResult<Q>, transitio
     };
     let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;
     let taken = Dissipated { E_viscous, E_hysteretic, theta_end: motion.state.theta };
+    let residuals = Residual::all(structure).map(|of @ &Residual { name, unit, description, .. }| {
+        NamedValue::new(name, of.of(structure, motion), unit, "", description)
+    });
     RunReport {
         start,
         end: motion.time,
@@ -328,6 +336,7 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::RunResult<Q>, transitio
         overturned: ending.overturned(),
         fall,
         peaks: [NamedPeak::new("a_g", "m/s2", ground)].into_iter().chain(NamedPeak::all(structure, peaks)).collect(),
+        residuals: residuals.collect(),
         taken: structure.base().takes_energy().then_some(taken),
         first_uplift: first(|kind| matches!(kind, TransitionKind::Uplift(_) | TransitionKind::Release(_))),
         first_impact: first(|kind| kind.is_impact()),

@@ -1,8 +1,9 @@
 //! The summary of a run.
-use crate::quantities::of_motion;
+use crate::quantities::{NamedValue, of_motion};
 use crate::run::{Dissipated, NamedPeak, OF_FLOOR, RunReport, RunSetup};
 use crate::validity;
 use rocking::digits::significant;
+use rocking::run::peaks::Peak;
 use rocking::run::validity::Limits;
 use rocking::run::{Ending, LONGEST_REST};
 use rocking::{Phase, Side};
@@ -67,6 +68,18 @@ impl RunSetup {
             writeln!(out, "dissipated     {E_viscous} J viscous, {E_hysteretic} J elastoplastic")?;
             writeln!(out, "theta at end   {theta_end} rad")?;
         }
+        for NamedValue { name, value, unit, description, .. } in &found.residuals {
+            let (per_unit, unit) = of_motion(*value, unit, base.g);
+            writeln!(out, "{name:<14} {:>12} {unit:<4} {description}", significant(value / per_unit))?;
+        }
+        let slid = found.peak("x").filter(|x| base.is_restrained() && x.magnitude > LEANING * base.B);
+        if let Some(Peak { magnitude, .. }) = slid {
+            let slid = significant(magnitude);
+            writeln!(
+                out,
+                "ties           stay vertical in the model: the base slides by {slid} m, and their pull sideways is left out"
+            )?;
+        }
         let first = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", instant(time)));
         writeln!(out, "first uplift   {}", first(found.first_uplift))?;
         let impact = if self.structure.foundation().is_some() { "touch " } else { "impact" };
@@ -91,6 +104,9 @@ impl RunSetup {
         Ok(out)
     }
 }
+
+/// Way of the base over B beyond which a tie leans.
+const LEANING: f64 = 0.01;
 
 /// An instant (s) to six digits or to 10 us, whichever is finer.
 pub fn instant(time: f64) -> String {

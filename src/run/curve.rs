@@ -44,6 +44,7 @@ pub fn drawn<Q: Coordinates>(run: &Run<Q>) -> Vec<Output> {
     let structure = &run.structure.at(run.detail);
     let mut drawn = lines(structure);
     drawn.extend(structure.foundation().iter().flat_map(|_| OF_GROUND));
+    drawn.extend(structure.foundation().and_then(|of| of.mu_c).map(|_| Output::x));
     drawn.extend(structure.is_one_mass().then_some(Output::delta_t(0)));
     drawn.extend(Output::OF_TIES.into_iter().filter(|_| structure.base().is_restrained()));
     drawn

@@ -4,6 +4,7 @@ use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
 use rocking::names::unknown;
 use rocking::run::fall::RunResult;
+use rocking::run::residual::{RESIDUALS, Residual};
 use rocking::run::{Ending, Run, RunError, Runs};
 use rocking::{Output, Structure};
 use smallvec::{SmallVec, smallvec};
@@ -31,7 +32,7 @@ pub struct Summary {
     pub ending: Ending,
     /// Time of the end, s.
     pub end: f64,
-    /// Largest magnitude of each measure, NaN if the structure does not have it; of a structure that overturns, before it falls.
+    /// Magnitude of each measure, NaN if the structure does not have it; peaks of a structure that overturns are those before it falls.
     pub peaks: PeakMagnitudes,
     pub transitions: u64,
     pub steps: u64,
@@ -45,11 +46,23 @@ pub type PeakMagnitudes = SmallVec<[f64; Output::PEAKS_OF_ONE.len() + 1]>;
 /// Name and unit of a peak.
 pub type Measure = (String, String);
 
-/// The measures of a run of `structure`: its peaks, and the largest rotation as a fraction of the slenderness angle.
+/// The measures of a run of `structure`: its peaks, the largest rotation as a fraction of the slenderness angle, and what is left at its end.
 pub fn measures(structure: &Structure) -> Vec<Measure> {
     let named = |of: Output| (of.name(structure), of.unit().into());
     let all = Output::with_peak(structure).into_iter().map(named);
-    all.chain([("theta/alpha_cg".into(), "1".into())]).collect()
+    let left = Residual::all(structure).map(|of| (of.name.into(), of.unit.into()));
+    all.chain([("theta/alpha_cg".into(), "1".into())]).chain(left).collect()
+}
+
+/// The heading of the column of a measure called `name`, without its unit.
+pub fn column(name: &str) -> String {
+    if RESIDUALS.iter().any(|of| of.name == name) { name.into() } else { format!("peak_{name}") }
+}
+
+/// The name of the measure of a column with this heading, if the column has one.
+pub fn of_column(heading: &str) -> Option<&str> {
+    let name = heading.split('[').next().unwrap_or(heading);
+    heading.strip_prefix("peak_").or_else(|| RESIDUALS.iter().any(|of| of.name == name).then_some(heading))
 }
 
 /// Places of the measures of one kind of structures among the measures of a plan.
@@ -135,7 +148,9 @@ impl Outcome {
         let rotation = peaks.theta().magnitude / libm::atan(run.structure.base().tan_alpha_cg);
         let magnitudes = layout.outputs.iter().map(|of| peaks.of(*of).map_or(f64::NAN, |peak| peak.magnitude));
         let mut all = smallvec![f64::NAN; measures];
-        layout.places.iter().zip(magnitudes.chain([rotation])).for_each(|(place, magnitude)| all[*place] = magnitude);
+        let left = Residual::all(&run.structure).map(|of| of.of(&run.structure, &finish.motion).abs());
+        let all_of_run = magnitudes.chain([rotation]).chain(left);
+        layout.places.iter().zip(all_of_run).for_each(|(place, magnitude)| all[*place] = magnitude);
         Outcome::Ended(Summary {
             ending: finish.ending,
             end: finish.motion.time,

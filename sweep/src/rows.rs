@@ -2,7 +2,7 @@
 //!
 //! A run's key stands for names, parameters, samples, scale factors, conditions, the build of the program.
 
-use crate::outcome::{Measure, Outcome, Summary};
+use crate::outcome::{Measure, Outcome, Summary, column};
 use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan, values_of};
 use crate::row_file::{Digest, Known, Program, RowFile, do_runs, fixed, heading, line};
 use anyhow::{bail, ensure};
@@ -360,7 +360,7 @@ pub fn of_numbers(numbers: &[Measure]) -> Vec<String> {
 fn headings(Plan { measures, numbers, .. }: &Plan, validity: bool) -> Vec<String> {
     let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(&measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
-    let peaks = measures.iter().map(|(name, unit)| heading(&format!("peak_{name}"), unit)).collect();
+    let peaks = measures.iter().map(|(name, unit)| heading(&column(name), unit)).collect();
     let beyond = ASSUMPTIONS.iter().flat_map(|of| [of.name.to_owned(), heading(of.time_name, "s")]);
     let beyond = beyond.chain(fixed(&["energy_gains", "settlings"]));
     [

@@ -41,11 +41,13 @@ pub const NUMBERS: [FieldRow; 13] = [
 ];
 
 /// The numbers of ground that gives, as [`Ground`] has them; without all of them the ground is rigid.
-pub const OF_GROUND: [FieldRow; 4] = [
+pub const OF_GROUND: [FieldRow; 6] = [
     ("f_v", "Hz", "frequency of the bounce on the ground", 10.0, [0.5, 200.0]),
     ("k_v", "N/m", "vertical stiffness of the ground (Winkler springs)", f64::NAN, [1e6, 1e12]),
     ("zeta_v", "1", "damping ratio of the bounce", 0.2, [0.0, 1.0]),
     ("n_points", "1", "contact points from edge to edge", 2.0, [2.0, 21.0]),
+    ("mu_c", "1", "coefficient of friction of a base that may slide", f64::NAN, [0.0, 2.0]),
+    ("fs", "1", "capacity of the ground over its load at rest", f64::NAN, [1.05, 20.0]),
 ];
 
 /// The preset of a structure whose numbers stand alone.
@@ -184,8 +186,9 @@ impl Fields {
 
     /// Ground that gives; none if it is rigid.
     fn ground(&self) -> Result<Option<Ground>, String> {
-        let [f_v, k_v, zeta_v, n_points] = OF_GROUND.map(|number| self.given(number.0).transpose());
-        let ground = Ground { f_v: f_v?, k_v: k_v?, zeta_v: zeta_v?, n_points: n_points?, ..Ground::default() };
+        let [f_v, k_v, zeta_v, n_points, mu_c, fs] = OF_GROUND.map(|number| self.given(number.0).transpose());
+        let [f_v, k_v, zeta_v, n_points, mu_c, fs] = [f_v?, k_v?, zeta_v?, n_points?, mu_c?, fs?];
+        let ground = Ground { f_v, k_v, zeta_v, n_points, mu_c, fs, ..Ground::default() };
         Ok((ground != Ground::default()).then_some(ground))
     }
 

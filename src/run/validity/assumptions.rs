@@ -4,7 +4,7 @@ use crate::numbers::Number;
 use crate::run::reaction_series::Extent;
 use crate::series::terms::Terms;
 use crate::structure::quantity::{Refused, ensure};
-use crate::{Impulse, Phase, Reactions};
+use crate::{Friction, Impulse, Phase, Reactions};
 use std::fmt;
 
 /// The limits: a value beyond one gives a warning.
@@ -233,10 +233,10 @@ pub(super) const PRESSED_EDGE: OfReactions = OfReactions {
     worse: |Scale { W, .. }, than| [Some(Combination([0.0, -1.0, 0.0, than * W])), None],
 };
 
-/// The base does not slide. In flight nothing rubs.
+/// The base does not slide. In flight nothing rubs, and a base that slides needs the friction that it has.
 pub(super) const NO_SLIDING: OfReactions = OfReactions {
     place: FRICTION,
-    holds_in: |phase| !phase.properties().is_free,
+    holds_in: |phase| !phase.properties().is_free && phase.contact().friction == Friction::Sticks,
     value: |_, &Reactions { R_h, R_v, .. }| if R_v > 0.0 { R_h.abs() / R_v } else { f64::INFINITY },
     worse: |_, than| [1.0, -1.0].map(|s| Some(Combination([s, -than, 0.0, 0.0]))),
 };
