@@ -549,12 +549,11 @@ fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
         let [mu_c, slender] = [mu_c, base.tan_alpha_cg].map(short);
         warnings.push(format!("mu_c = {mu_c} is below tan(alpha_cg) = {slender}: the base slides rather than rocks"));
     }
-    let capacity =
-        foundation.points.iter().map(|point| -point.q / (point.k * foundation.y_s)).fold(f64::INFINITY, f64::min);
-    if foundation.yields && foundation.points.len() == 2 && capacity >= 2.0 {
+    let reserve = foundation.reserve();
+    if foundation.yields && foundation.points.len() == 2 && reserve >= 2.0 {
         warnings.push(format!(
             "fs = {}: from 2 on, two points yield by their dashpots alone, because one carries all at most; take n_points = 11 for soil",
-            short(capacity)
+            short(reserve)
         ));
     }
     warnings

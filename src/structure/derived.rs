@@ -95,6 +95,12 @@ static OF_GROUND: [Derived<Structure>; 6] = [
     derived!("y_s" ["m"] "height of the base at rest above the unloaded ground", "", |of| of.ground().y_s),
 ];
 
+/// The numbers of a base that may slide, and of ground that yields.
+static OF_STRENGTH: [Derived<Structure>; 2] = [
+    derived!("mu_c" ["1"] "coefficient of friction of the base", "", |of| of.ground().mu_c.unwrap_or(f64::NAN)),
+    derived!("fs" ["1"] "least capacity of a contact point over its load at rest", "", |of| of.ground().reserve()),
+];
+
 impl Structure {
     /// Name, unit, description and value of the numbers that are shown, apart from the numbers of the modes; on ground that gives, the
     /// numbers of the ground last.
@@ -102,7 +108,9 @@ impl Structure {
         let of = |of: &Derived<Structure>| ([of.name, of.unit, of.description], (of.value)(self));
         let ties = TIES.iter().map(|of| ([of.name, of.unit, of.description], (of.get)(&self.base().ties)));
         let of_ground = OF_GROUND.iter().filter(|_| self.foundation().is_some());
-        OF_STRUCTURE.iter().map(of).chain(ties).chain(of_ground.map(of))
+        let of_strength = OF_STRENGTH.iter().filter(|_| self.foundation().is_some()).map(of);
+        let of_strength = of_strength.filter(|(_, value)| value.is_finite());
+        OF_STRUCTURE.iter().map(of).chain(ties).chain(of_ground.map(of)).chain(of_strength)
     }
 
     /// The numbers of each mode, lowest frequency first.

@@ -348,6 +348,11 @@ impl Foundation {
         Ok(())
     }
 
+    /// The least capacity of a point over its load at rest, infinite of elastic points.
+    pub(crate) fn reserve(&self) -> f64 {
+        self.points.iter().map(|point| -point.q / (point.k * self.y_s)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Number of the coordinates beside those of the modes.
     pub(crate) fn coordinates(&self) -> usize {
         self.settled() + if self.yields { self.points.len() } else { 0 } - self.place

@@ -63,7 +63,7 @@ function motionView() {
     const [u, a_t, h] = floors() ? [state[own("u")], state[own("a_t")], floors()[floor - 1]?.[1] ?? H] : [state.u, state.a_t, H];
     const uplift = 2 * B * Math.sin(Math.abs(theta));
     const pivot = givesWay() ? 0 : Math.sign(theta) * B;
-    const delta_t = pivot * (1 - Math.cos(theta)) + u * Math.cos(theta) + h * Math.sin(theta);
+    const delta_t = (state.x ?? 0) + pivot * (1 - Math.cos(theta)) + u * Math.cos(theta) + h * Math.sin(theta);
     return { V_t: m * a_t, M_t: m * H * a_t, uplift, ...state, phase, u, a_t, delta_t };
   }
 
@@ -274,10 +274,10 @@ function motionView() {
     const { B } = motion.parameters;
     const side = state.theta < 0 ? -1 : 1;
     const theta = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, exaggeration * state.theta));
-    // about an edge; on ground that gives about the middle, which moves vertically
-    const [pivot, rise] = givesWay() ? [0, exaggeration * state.y] : [side * B, 0];
-    const place = (along) => ({ x: pivot + (along - pivot) * Math.cos(theta), y: (along - pivot) * Math.sin(theta) - rise });
-    at("body").setAttribute("transform", `${rise ? `translate(0 ${-rise}) ` : ""}rotate(${(theta * 180) / Math.PI} ${pivot} 0)`);
+    // about an edge; on ground that gives about the middle, which moves vertically, and sideways if the base may slide
+    const [pivot, rise, way] = givesWay() ? [0, exaggeration * state.y, exaggeration * (state.x ?? 0)] : [side * B, 0, 0];
+    const place = (along) => ({ x: way + pivot + (along - pivot) * Math.cos(theta), y: (along - pivot) * Math.sin(theta) - rise });
+    at("body").setAttribute("transform", `${rise || way ? `translate(${way} ${-rise}) ` : ""}rotate(${(theta * 180) / Math.PI} ${pivot} 0)`);
     bend(displacements(state).map((u) => exaggeration * u));
     const lifts = state.theta !== 0;
     set(at("pivot"), { cx: pivot, visibility: lifts && pivot ? "visible" : "hidden" });
