@@ -7,7 +7,7 @@
 
 use crate::estimates::pushover::check_ties;
 use crate::mechanics::restraint::{Dissipators, Restraint};
-use crate::structure::quantity::Refused;
+use crate::structure::quantity::{Refused, ensure};
 use crate::{Side, Structure};
 use serde::Serialize;
 
@@ -21,9 +21,12 @@ pub struct FlagPoint {
 }
 
 /// The moments while the base of `structure` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
-/// this many equal `steps` each way. Refuses dissipators on ground that gives.
+/// this many equal `steps` each way. Refuses dissipators on ground that gives, and ground that yields.
 pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Result<Vec<FlagPoint>, Refused> {
     check_ties(structure)?;
+    ensure(structure.foundation().is_none_or(|of| !of.yields), || {
+        "fs, q_u: on ground that yields the moment on the way back depends on the way there: use pushover, or simulate a slow force".into()
+    })?;
     let base = structure.base();
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
     let mut dissipators = Dissipators::NEW;

@@ -512,12 +512,13 @@ impl Foundation {
 
 impl Foundation {
     /// The moment about its middle by which the ground turns back the `base` of a structure that is held at the rotation of this sine and
-    /// cosine: Σ ξ N cos θ, N·m, with N = k max(0, ξ sin θ − y) and y of the vertical balance.
+    /// cosine: Σ ξ N cos θ, N·m, with N = min(q, k max(0, ξ sin θ − y)) and y of the vertical balance.
     pub(crate) fn restoring(&self, base: &Base, [sin, cos]: [f64; 2]) -> f64 {
         let y = if sin == 0.0 { self.y_s } else { self.held_at(sin, base)[0] };
         // as many points lie on the other side: at rest nothing is left of rounding
         let moment = |point: &ContactPoint| {
-            point.k * point.xi * ((point.xi * sin - y).max(0.0) - (-point.xi * sin - y).max(0.0))
+            let depth = |xi: f64| (xi * sin - y).max(0.0).min(point.q / point.k);
+            point.k * point.xi * (depth(point.xi) - depth(-point.xi))
         };
         0.5 * self.points.iter().map(moment).sum::<f64>() * cos
     }
