@@ -395,11 +395,11 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// Whether the structure has the phase of this `motion`, which may come from bytes.
     pub fn admits(&self, motion: &Motion<Q>) -> bool {
-        let points = Q::foundation(self.structure()).map(|ground| ground.points.len());
+        let ground = Q::foundation(self.structure());
         match motion.phase {
-            Phase::OnGround(of) => points == Some(of.points.into()) && of.pressed >> of.points == 0,
-            Phase::Rocking(_) => points.is_none() && self.settings.detail.has_uplift(),
-            Phase::FullContact => points.is_none(),
+            Phase::OnGround(of) => ground.is_some_and(|ground| ground.admits(of)),
+            Phase::Rocking(_) => ground.is_none() && self.settings.detail.has_uplift(),
+            Phase::FullContact => ground.is_none(),
             Phase::Overturned(_) => true,
         }
     }

@@ -27,12 +27,12 @@ use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{Dissipators, ties};
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product};
 use crate::structure::ground::Footing;
-use crate::structure::mode::Modes;
-use crate::{Base, Foundation, Friction, Phase, PressedPoints, State};
+use crate::structure::mode::{Mode, Modes};
+use crate::{Base, Foundation, Friction, Phase, PressedPoints, State, Structure};
 use std::cell::RefCell;
 use wide::{f64x2, f64x4};
 
-/// Part of the energy that certainly leaves all points pressed that a structure at rest may have.
+/// Part of the energy that certainly changes no contact that a structure at rest may have.
 const AT_REST: f64 = 0.9;
 
 /// A structure on ground that gives.
@@ -47,6 +47,8 @@ pub(crate) struct OnGround<V: Abreast> {
     radius: f64,
     /// Energy above rest below which no point leaves the ground, J.
     least_lift: f64,
+    /// Bounds over √(2E) at an energy E (J) above rest: of the horizontal force that the modes need, and of how the normal force changes.
+    swings: [f64; 2],
     scratch: RefCell<Box<GroundScratch<V>>>,
     /// Room for the series of which only the first terms count.
     first: RefCell<Box<Arc<Modes>>>,
@@ -103,6 +105,22 @@ impl Pushes {
     }
 }
 
+/// The bounds [`OnGround::swings`]. With w = u less its place at rest at the same rotation, the friction that sticking needs is Σ Γ (k w +
+/// c u̇)/m but for products of the motion; mass that no mode carries adds θ̈, which a bound `fastest` (1/s) of all rates bounds.
+fn swings(structure: &Structure, fastest: f64) -> [f64; 2] {
+    let (&Base { m_t, J0, S_res, .. }, ground, modes) = (structure.base(), structure.ground(), structure.modes());
+    let springs =
+        modes.iter().map(|mode| mode.gamma * mode.gamma * mode.stiffness / (mode.mass * mode.mass)).sum::<f64>();
+    let damper =
+        |mode: &Mode| mode.gamma * mode.damping / mode.mass * (1.0 / mode.mass.sqrt() + mode.height / J0.sqrt());
+    let along = match S_res == 0.0 {
+        true => springs.sqrt() + modes.iter().map(|mode| damper(mode).abs()).sum::<f64>(),
+        false => 4.0 * fastest * m_t.sqrt(),
+    };
+    let dashpots = ground.points.iter().map(|point| point.c).sum::<f64>();
+    [along, ground.sum(0).sqrt() + dashpots / m_t.sqrt()]
+}
+
 /// Adds `of` at ξ to its sums with 1, ξ and ξ².
 fn add_moments(sums: &mut [f64; 3], xi: f64, of: f64) {
     *sums = [sums[0] + of, sums[1] + of * xi, sums[2] + of * xi * xi];
@@ -149,6 +167,7 @@ impl<V: Abreast> OnGround<V> {
             lowest: frequencies[0],
             radius: (base.J_P / base.m_t).sqrt(),
             least_lift: foundation.least_lift(base, body, modes),
+            swings: swings(structure, fastest),
             scratch: RefCell::new(Box::new(GroundScratch {
                 fours: V::groups(modes),
                 left: [[f64x4::ZERO; 2]; MAX_ORDER + 1],
@@ -350,12 +369,33 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
         state
     }
 
-    /// Whether the energy above rest is too small to lift a point.
+    /// Whether the energy above rest is too small to lift a point, to make one yield, or to make the base slide.
     fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
         let structure = &self.subject.structure;
-        let (ground, base, still) = (structure.ground(), structure.base(), Modes::parts(structure, 0.0));
-        let resting = ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base);
+        let (ground, base) = (structure.ground(), structure.base());
         let of = |state: &State<Modes>| energy(structure, ground.contact(state, base), state, dissipators);
-        of(state) - of(&resting) < AT_REST * self.least_lift
+        let (resting, room) = if ground.yields {
+            let Some(rest @ [y, sin]) = ground.at_rest(structure, &|i| state.u.settlement(ground, i)) else {
+                return false;
+            };
+            let mut u = Modes::each(structure, |_, mode| base.g * mode.gamma * sin / mode.stiffness);
+            ground.beside().for_each(|place| u.set(place, state.u.of(place)));
+            u.set_footing(ground, Footing { y, sin, taken: 0.0 });
+            let resting = State { u, u_dot: Modes::parts(structure, 0.0), theta: libm::asin(sin), theta_dot: 0.0 };
+            (resting, ground.least_yield(structure, rest, &|i| state.u.settlement(ground, i)))
+        } else {
+            let still = Modes::parts(structure, 0.0);
+            (ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base), self.least_lift)
+        };
+        let room = match (ground.mu_c, state.u_dot.slide(ground)) {
+            (Some(mu_c), Some(0.0)) => {
+                let [along, down] = self.swings;
+                let sines = libm::sin(state.theta).abs() + resting.u.footing(ground).sin.abs();
+                room.min(0.5 * (mu_c * base.m_t * base.g / (along + down * (sines + mu_c))).powi(2))
+            }
+            (Some(_), _) => return false,
+            (None, _) => room,
+        };
+        of(state) - of(&resting) < AT_REST * room
     }
 }

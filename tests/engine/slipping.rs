@@ -3,6 +3,7 @@
 
 use crate::common::transitions;
 use rocking::engine::Settings;
+use rocking::run::residual::Residual;
 use rocking::{
     Engine, Friction, Ground, Modes, Output, Parameters, Side, State, Structure, Transition, TransitionKind,
 };
@@ -100,4 +101,21 @@ fn a_block_slides_as_newmark_s() {
     events.extend(transitions(&mut engine, 1.0, none));
     let (g, x) = (block.g, engine.sample(none).output(Output::x));
     println!("{x} {} {events:?}", -0.5 * a * t_0 * t_0 * (a / (mu_c * g) - 1.0));
+}
+
+/// A structure that comes to rest on two points that have settled does so where the rest is solved.
+#[test]
+fn a_structure_comes_to_the_rest_that_is_solved() {
+    let ground = Ground { f_v: Some(60.0), zeta_v: Some(0.5), fs: Some(1.5), ..Ground::default() };
+    let mut engine = engine(Parameters { zeta_fc: 0.2, ..EVISON }, &ground, 0.75246734e-3, 0.04);
+    let load = engine.structure().load(0.0, 0.0, &[]).unwrap();
+    transitions(&mut engine, 60.0, load);
+    let left = |name: &str| {
+        let residual = Residual::all(engine.structure()).find(|of| of.name == name).unwrap();
+        residual.of(engine.structure(), engine.motion())
+    };
+    let (theta, settlement) = (engine.motion().state.theta, engine.sample(load).output(Output::settlement));
+    assert!(left("tilt").abs() > 1e-4);
+    assert!((theta - left("theta_res")).abs() < 1e-9 * theta.abs(), "{theta} {}", left("theta_res"));
+    assert!((settlement - left("settlement_res")).abs() < 1e-9 * settlement, "{settlement}");
 }
