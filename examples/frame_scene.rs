@@ -30,7 +30,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let points = next() as usize;
     let [xi, k, c] = [(); 3].map(|()| Vec::from_iter((0..points).map(|_| next())));
     let frame = Structure::of_body(body, &modes, &floors)?;
-    let frame = if points == 0 { frame } else { frame.on(&Ground { xi, k, c, ..Ground::default() })? };
+    let [mu_c, fs] = [(); 2].map(|()| Some(next()).filter(|of| *of >= 0.0));
+    let frame = if points == 0 { frame } else { frame.on(&Ground { xi, k, c, mu_c, fs, ..Ground::default() })? };
     let [dt, samples] = from_fn(|_| next());
     let ground: Vec<[f64; 2]> = (0..samples as usize).map(|_| from_fn(|_| next())).collect();
 
@@ -44,7 +45,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         engine.advance(dt, LinearLoad { value, slope }, &mut show)?;
         let now = engine.sample(end);
         print!("S {:?}", now.output(Output::theta));
-        engine.structure().foundation().iter().for_each(|_| print!(" {:?}", now.output(Output::y)));
+        if let Some(ground) = engine.structure().foundation() {
+            print!(" {:?}", now.output(Output::y));
+            ground.mu_c.iter().for_each(|_| print!(" {:?}", now.output(Output::x)));
+            (0..ground.points.len()).filter(|_| ground.yields).for_each(|i| print!(" {:?}", now.output(Output::s(i))));
+        }
         for of in [Output::u, Output::a_t] {
             (0..engine.structure().floors().len()).for_each(|floor| print!(" {:?}", now.output(of(floor))));
         }

@@ -30,32 +30,42 @@ def record(event: str, first: int, samples: int, scale: float):
     return along[0][1], along[1][first:], up[1][first:]
 
 
-SCENES = {
-    "one mass on two springs": (MCMANUS, 40.0, 0.2, 2, 0.7, False),
-    "one mass on a bed of 11": (MCMANUS, 40.0, 0.1, 11, 0.35, False),
-    "five storeys": (STOREYS, 8.0, 0.1, 3, 1.6, False),
-    "three storeys, tied, with a_v": (FRAMES["frame"], 12.0, 0.1, 2, 1.6, True),
+SCENES = {  # frame, f_v, zeta_v, points, scale, whether tied and shaken upwards, mu_c, fs
+    "one mass on two springs": (MCMANUS, 40.0, 0.2, 2, 0.7, False, None, None),
+    "one mass on a bed of 11": (MCMANUS, 40.0, 0.1, 11, 0.35, False, None, None),
+    "five storeys": (STOREYS, 8.0, 0.1, 3, 1.6, False, None, None),
+    "three storeys, tied, with a_v": (FRAMES["frame"], 12.0, 0.1, 2, 1.6, True, None, None),
+    "one mass that slides on two springs": (MCMANUS, 40.0, 0.0, 2, 0.9, False, 0.15, None),
+    "one mass on a bed of 11 that yields": (MCMANUS, 40.0, 0.2, 11, 0.5, False, None, 2.0),
+    "five storeys that slide on points that yield": (STOREYS, 8.0, 0.1, 3, 2.5, False, 0.15, 1.5),
+    "three storeys, tied, with a_v, that slide, yield and fly": (FRAMES["frame"], 20.0, 0.1, 2, 6.0, True, 0.4, 3.0),
 }
+POINTS, GROUND, FRICTION = ("touch", "release"), ("ground yields", "ground holds"), ("slip left", "slip right", "stick", "flight")
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_engine_moves_as_the_masses_do(name, program):
-    """Every touch and release, and theta, y, u and a of every floor at every sample, to 1e-9 of the peak and 100 times conditioning."""
-    frame, f_v, zeta_v, n, scale, is_tied = SCENES[name]
+    """Every event of the base, and theta, y, x, s, u and a of every floor at every sample, to 1e-9 of the peak and 100 times conditioning."""
+    frame, f_v, zeta_v, n, scale, is_tied, mu_c, fs = SCENES[name]
     dt, a_g, a_v = record("imperialValley_elCentro_1940", 150, 150, scale)
     ties, a_v = (ties_of(frame, 0.1), a_v) if is_tied else (Ties(), 0 * a_v)
     points = bed(frame, f_v, zeta_v, n)
-    exact = Motion(frame, ties, points)
+    exact = Motion(frame, ties, points, mu_c, fs or np.inf)
     expected = exact.follow(dt, a_g, a_v)
-    transitions, rows = engine(program, frame, dt, a_g, a_v, ties, "auto", points)
-    found, events = zip(*(of for of in transitions if of[1] in ("touch", "release"))), zip(*exact.events)
+    slides, settles = ([-1 if of is None else of] for of in (mu_c, fs))
+    given = ("auto", points, *slides, *settles)
+    transitions, rows = engine(program, frame, dt, a_g, a_v, ties, *given)
+    found, events = zip(*(of for of in transitions if of[1] in (*POINTS, *GROUND, *FRICTION))), zip(*exact.events)
     (times, kinds), (exact_times, exact_kinds) = found, events
-    assert kinds == exact_kinds and len(kinds) > 4
+    assert kinds == exact_kinds and all(kinds.count(of) > 1 for of in POINTS + GROUND * bool(fs) + FRICTION[:3] * bool(mu_c))
+    assert ("flight" in kinds) == name.endswith("fly")
     np.testing.assert_allclose(times, exact_times, rtol=0, atol=1e-8)
-    changed = engine(program, frame, dt, a_g * (1 + 1e-12), a_v, ties, "auto", points)[1]
+    changed = engine(program, frame, dt, a_g * (1 + 1e-12), a_v, ties, *given)[1]
     m = len(frame.masses)
-    for of in (slice(0, 1), slice(1, 2), slice(2, m + 2), slice(m + 2, None)):
-        peak, off = np.abs(expected[:, of]).max(), np.abs(changed[:, of] - rows[:, of]).max()
+    expected = np.delete(expected, [*([] if mu_c else [2]), *([] if fs else range(3, 3 + n))], axis=1)
+    ends = np.cumsum([1, 1, bool(mu_c), n * bool(fs), m, m])
+    for of in map(slice, [0, *ends], ends):
+        peak, off = (np.abs(of).max(initial=0.0) for of in (expected[:, of], changed[:, of] - rows[:, of]))
         np.testing.assert_allclose(rows[:, of], expected[:, of], rtol=0, atol=max(1e-9 * peak, 100 * off))
 
 
