@@ -12,6 +12,7 @@ pub mod outputs;
 pub(crate) mod reach;
 pub mod reactions;
 pub mod restraint;
+pub mod shown;
 pub mod state;
 
 #[cfg(test)]

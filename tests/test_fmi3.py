@@ -10,7 +10,7 @@ from evidence.coupling import bridge, convergence
 from evidence.coupling.early_return import EndedAtTransitions, EventBridge, Pier
 from evidence.coupling.masters import extrapolate
 from fmpy import simulate_fmu
-from host import ERROR, OK, OUTPUTS, PHASES, events, simulate, status
+from host import ERROR, OK, PHASES, events, simulate, status
 from pacoima import A_G, END, TIME, distance, rows
 from pacoima import OUTPUTS as COMPARED
 
@@ -41,7 +41,7 @@ ASKED = dict(stop_time=1.99, output_interval=0.01, record_events=False)
 ])
 def test_a_host_that_integrates_gets_the_same_bits_and_stays_above_the_floor(shaken, shaken3, start_values, solver):
     asked = ASKED | solver | dict(fmi_type="ModelExchange", start_values=start_values,
-                                  output=[*OUTPUTS, "phase", "transitions", "phase_indicator", "overturning_indicator"])
+                                  output=[*shaken3.outputs, "phase", "transitions", "phase_indicator", "overturning_indicator"])
     found = simulate_fmu(shaken3.path, **asked)
     assert_same_bits(found, simulate_fmu(shaken["mcmanus"].path, **asked))
     assert found["transitions"][-1] > 15
@@ -52,7 +52,7 @@ def test_a_host_that_integrates_gets_the_same_bits_and_stays_above_the_floor(sha
 def test_without_strings_the_fmu_follows_its_record(shaken, export, pacoima_record):
     fmu = export("mcmanus", pacoima_record, "--no-strings", fmi=3)
     assert "String" not in {variable.type for variable in fmu.variables.values()}
-    assert_same_bits(*(simulate_fmu(of.path, output=OUTPUTS, **ASKED) for of in (fmu, shaken["mcmanus"])))
+    assert_same_bits(*(simulate_fmu(of.path, output=fmu.outputs, **ASKED) for of in (fmu, shaken["mcmanus"])))
 
 
 @pytest.mark.parametrize("goes_back", [False, True])
@@ -129,7 +129,7 @@ def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3):
             if handles:
                 one.event()
             assert one.slave.doStep(impact, 1e-3)[3] == impact + 1e-3
-            ends.add(one.reals(OUTPUTS))
+            ends.add(one.reals())
     assert len(ends) == one.get("transitions") == 1
 
 

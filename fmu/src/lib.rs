@@ -33,7 +33,7 @@ pub mod rocking_model;
 mod scene;
 mod setup;
 mod shown;
-mod source;
+pub mod source;
 pub mod variables;
 
 use resources::Contents;

@@ -28,7 +28,7 @@ pub struct VariableTable {
     /// The variables, in the order of the model description.
     pub variables: Arc<[Variable]>,
     /// The sources of their values.
-    pub(crate) sources: Arc<[Source]>,
+    pub sources: Arc<[Source]>,
 }
 
 impl VariableTable {

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex, overload
 
 if TYPE_CHECKING:
@@ -12,10 +13,8 @@ if TYPE_CHECKING:
 
     from ._native import Record, Run
 
-# Of each quantity in a picture: what it is called, the unit, and how much of its SI unit that is; accelerations are in g.
-LABELS = {"a_g": ("$a_g$", "g", 0.0), "theta": (r"$\theta$", "rad", 1.0), "u": ("$u$", "mm", 1e-3), "a_t": ("$a_t$", "g", 0.0)}
-OVER_HEIGHT = {"a_t": ("acceleration", "g", 0.0), "drift": ("drift", "mm", 1e-3), "V": ("storey shear", "kN", 1e3),
-               "M": ("storey moment", "kN.m", 1e3)}
+# A quantity in a picture: its name in the results, its label with its unit, and the size of the unit in SI units.
+Axis = tuple[str, str, float]
 
 
 @contextmanager
@@ -171,15 +170,15 @@ class Estimate(dict[str, float]):
         return self.text
 
 
-def plot_run(run: "Run", kind: str) -> "Figure":
-    """The picture of a run that `kind` names."""
-    kinds = {"history": plot_history, "profile": plot_profile}
+def plot_run(run: "Run", kind: str, histories: list[Axis], heights: list[tuple[str, str, str, float]]) -> "Figure":
+    """The picture of a run that `kind` names, with these axes: over time, or over the height at "Floors", along "Storeys" or at their "Feet"."""
+    kinds = {"history": partial(plot_history, run, histories), "profile": partial(plot_profile, run, heights)}
     if kind not in kinds:
         raise ValueError(f"kind = {kind!r} is unknown; these are known: {', '.join(kinds)}")
-    return kinds[kind](run)
+    return kinds[kind]()
 
 
-def plot_profile(run: "Run") -> "Figure":
+def plot_profile(run: "Run", shown: list[tuple[str, str, str, float]]) -> "Figure":
     """Peaks of floors and storeys over the height, and those of the structure on a fixed base, as far as the run goes."""
     import numpy as np
 
@@ -191,18 +190,18 @@ def plot_profile(run: "Run") -> "Figure":
     if not len(run.profile["h"]):
         raise ValueError("the structure has no floors, and therefore no profile: give masses, heights and shapes")
     fixed = simulate(run.structure, run.record, detail="fixed_base", tolerance=run.tolerance, duration=run.end - run.start)
-    figure, axes = pyplot.subplots(1, len(OVER_HEIGHT), sharey=True, figsize=(10, 5), layout="constrained")
+    figure, axes = pyplot.subplots(1, len(shown), sharey=True, figsize=(10, 5), layout="constrained")
     for of, label, style in ((run, "rocking", "-o"), (fixed, "fixed base", "--o")):
         h = np.concatenate([[0], of.profile["h"]])
-        for axis, (name, (title, unit, size)) in zip(axes, OVER_HEIGHT.items()):
-            values = of.profile[name] / (size or run.structure.g)
-            if name == "a_t":
-                axis.plot(np.concatenate([[of.peaks["a_g"] / run.structure.g], values]), h, style, markersize=3, label=label)
-            elif name == "M":  # linear over a storey
+        for axis, (place, name, title, size) in zip(axes, shown):
+            values = of.profile[name] / size
+            if place == "Floors":
+                axis.plot(np.concatenate([[of.peaks["a_g"] / size], values]), h, style, markersize=3, label=label)
+            elif place == "Feet":  # linear over a storey
                 axis.plot(np.concatenate([values, [0]]), h, style, markersize=3, label=label)
             else:
                 axis.stairs(values, h, orientation="horizontal", baseline=None, linestyle=style.rstrip("o"), label=label)
-            axis.set(xlabel=f"{title} ({unit})")
+            axis.set(xlabel=title)
     for axis in axes:
         axis.set(xlim=(0, None), ylim=(0, None))
         axis.locator_params(axis="x", nbins=3)
@@ -226,7 +225,7 @@ def plot_record(record: "Record") -> "Figure":
     return figure
 
 
-def plot_history(run: "Run") -> "Figure":
+def plot_history(run: "Run", shown: list[Axis]) -> "Figure":
     """The histories of a run, with marks at its transitions, and a dashed line from which the structure falls."""
     import numpy as np
 
@@ -234,17 +233,12 @@ def plot_history(run: "Run") -> "Figure":
         from matplotlib import pyplot
 
     response = run.at(np.linspace(run.start, run.end, 4001))
-    top = f"[{len(run.profile['h'])}]"
-    names = {name: name if name in response else name + top for name in LABELS}
-    shown = {name: of for name, of in names.items() if of in response}
     figure, axes = pyplot.subplots(len(shown), sharex=True, figsize=(8, 7), layout="constrained")
     instants = [transition.time for transition in run.transitions]
-    for axis, (label, name) in zip(axes, shown.items()):
-        symbol, unit, size = LABELS[label]
-        size = size or run.structure.g
+    for axis, (name, label, size) in zip(axes, shown):
         axis.plot(response["time"], response[name] / size, linewidth=0.8)
         axis.plot(instants, run.at(instants)[name] / size, ".", markersize=3, label="transitions")
-        axis.set(ylabel=f"{symbol}{name.removeprefix(label)} ({unit})", xlim=(run.start, run.end))
+        axis.set(ylabel=label, xlim=(run.start, run.end))
         if run.fall is not None:
             axis.axvline(run.fall, color="tab:purple", linestyle="--", linewidth=0.8, label="falls")
     axes[0].legend(loc="upper right", fontsize="small")

@@ -1,18 +1,19 @@
 //! The page that shows a run, and its content.
 
 use crate::run::{MotionCurve, RunReport, RunSetup};
+use rocking::mechanics::shown::{GROUND, Legend, Place, ReadUnit, Reader, UNITS};
 use rocking::run::RunError;
 use rocking::structure::derived::OF_MODE;
 use rocking::{Body, Detail, Output, Structure};
 pub use rocking_view::Sizes;
-use rocking_view::{DrawnPeak, Quanta, ShownScene, quanta};
+use rocking_view::{DrawnPeak, Quanta, ShownQuantity, ShownScene, quanta};
 
 /// Parts of a peak by which what is shown may miss the motion: units of the last digit of its numbers. The first is taken
 /// that needs no more than [`MOST_VALUES`].
 const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 
-/// The largest number of values: about 5 MB.
-const MOST_VALUES: usize = 1_000_000;
+/// The largest number of values: about 7 MB.
+const MOST_VALUES: usize = 1_800_000;
 
 impl RunSetup {
     /// The page that shows the run.
@@ -31,7 +32,6 @@ impl RunSetup {
         let MotionCurve { found, times, phases, columns } = self.curve(part)?;
         let mut phases: Vec<_> = phases.iter().map(|phase| phase.name()).enumerate().collect();
         phases.dedup_by_key(|(_, phase)| *phase);
-        let columns = columns.into_iter().filter(|(name, _)| name != "delta_t");
         let peaks = |found: &RunReport| -> Vec<DrawnPeak> {
             found.peaks.iter().map(|peak| (peak.name.clone(), peak.magnitude, peak.time)).collect()
         };
@@ -45,7 +45,8 @@ impl RunSetup {
             fall: found.fall,
             part,
             time: Quanta::of_time(&times, found.start),
-            columns: columns.map(|(name, values)| (name, Quanta::new(&values))).collect(),
+            quantities: quantities(&self.structure),
+            columns: columns.into_iter().map(|(name, values)| (name, Quanta::new(&values))).collect(),
             phases,
             transitions: found.events.iter().map(|at| (quanta(at.time - found.start), at.kind.name())).collect(),
             peaks: peaks(&found),
@@ -54,11 +55,38 @@ impl RunSetup {
     }
 }
 
+/// What the page shows of `structure`: the ground acceleration, the numbers at the cursor, and then what is shown over the height alone.
+fn quantities(structure: &Structure) -> Vec<ShownQuantity> {
+    let g = structure.base().g;
+    let [numbers, histories] = [Place::Numbers, Place::Page].map(|place| Output::shown_in(place, structure));
+    let quantity = |name, legend: Legend, of: &'static str, over| {
+        let (per, unit) = ReadUnit::in_pictures(of, g);
+        let axis = |read: &ReadUnit| match read.reader {
+            Reader::Axes(from, below) if read.of == of => Some((read.name, read.size(g), from, below)),
+            _ => None,
+        };
+        ShownQuantity { name, legend, unit, per, axes: UNITS.iter().filter_map(axis).collect(), over }
+    };
+    let of_output = |of: Output| {
+        let before = &histories[..histories.iter().position(|own| *own == of).unwrap_or(0)];
+        let over = before.iter().find_map(|before| Some((before.symbol(), of.over(*before, structure)?)));
+        quantity(of.symbol(), *of.legend()?, of.unit(), over).into()
+    };
+    let over_height = Output::over_height().map(|(of, _)| of).filter(|of| !numbers.contains(of));
+    let once = numbers.iter().copied().filter(|of| of.number().is_none_or(|number| number == 0));
+    let outputs = once.chain(over_height).filter_map(of_output);
+    [quantity(GROUND.symbol, GROUND, "m/s2", None)].into_iter().chain(outputs).collect()
+}
+
 /// The structure as it is drawn.
 pub fn sizes(structure: &Structure) -> Sizes {
     let (base, shown) = (structure.base(), Output::with_peak(structure));
     let ties = Output::OF_TIES.into_iter().zip([0.0, base.ties.xi_d, -base.ties.xi_d]);
-    let ties = ties.filter(|(of, _)| shown.contains(of)).map(|(of, along)| (of.symbol(), along)).collect();
+    let tie = |(of, along): (Output, f64)| {
+        let (per, unit) = ReadUnit::in_pictures(of.unit(), base.g);
+        (of.symbol(), along, per, unit)
+    };
+    let ties = ties.filter(|(of, _)| shown.contains(of)).map(tie).collect();
     let (&Body { m_s: m, m0, S_1, .. }, floors) = (structure.body(), structure.floors());
     let H = floors.last().map_or(S_1 / m, |floor| floor.height);
     let f_fc = structure.mode_table().next().map_or(0.0, |first| (OF_MODE[0].value)(&first));

@@ -1,5 +1,8 @@
 //! Named values for people and for programs.
+use crate::run::RunSetup;
+use rocking::Output;
 use rocking::digits::significant;
+use rocking::mechanics::shown::{GROUND, Legend, Place, ReadUnit};
 use serde::{Serialize, Serializer};
 
 /// One value, its unit (`1` for a ratio) and the equation of the paper that defines it.
@@ -20,22 +23,49 @@ impl NamedValue {
     }
 }
 
-/// The unit in which people read a force or a moment (N, N.m) of this `magnitude`: its size in SI units, and its name. Any
-/// other `unit` stays.
-pub fn readable(magnitude: f64, unit: &str) -> (f64, &str) {
-    match unit {
-        "N" if magnitude.abs() >= 1e3 => (1e3, "kN"),
-        "N.m" if magnitude.abs() >= 1e3 => (1e3, "kN.m"),
-        unit => (1.0, unit),
-    }
+/// The unit in which people read the peak of a motion of this `magnitude`: its size in SI units, and its name; `g` in m/s². Forces
+/// and moments below 1000 stay in SI units.
+pub fn of_motion(magnitude: f64, unit: &str, g: f64) -> (f64, &str) {
+    let (per_unit, name) = ReadUnit::in_pictures(unit, g);
+    if per_unit >= 1e3 && magnitude.abs() < per_unit { (1.0, unit) } else { (per_unit, name) }
 }
 
-/// The unit in which people read the peak of a motion of this `magnitude`: mm, multiples of `g` (m/s²), or that of [`readable`].
-pub fn of_motion(magnitude: f64, unit: &str, g: f64) -> (f64, &str) {
-    match unit {
-        "m" => (1e-3, "mm"),
-        "m/s2" => (g, "g"),
-        unit => readable(magnitude, unit),
+/// The same of a force or a moment. Any other `unit` stays.
+pub fn readable(magnitude: f64, unit: &str) -> (f64, &str) {
+    if matches!(unit, "N" | "N.m") { of_motion(magnitude, unit, 1.0) } else { (1.0, unit) }
+}
+
+/// A quantity on an axis of a picture.
+pub struct PlotAxis {
+    /// Its name among the results of a run.
+    pub name: String,
+    /// Its label in words.
+    pub label: &'static str,
+    /// Its symbol in an equation, with the number of a floor.
+    pub symbol: String,
+    /// Its unit, and the size of the unit in SI units.
+    pub unit: (f64, &'static str),
+}
+
+impl RunSetup {
+    /// The axis of the ground acceleration.
+    pub fn of_ground(&self) -> PlotAxis {
+        let Legend { label, symbol, .. } = GROUND;
+        let unit = ReadUnit::in_pictures("m/s2", self.structure.base().g);
+        PlotAxis { name: symbol.into(), label, symbol: symbol.into(), unit }
+    }
+
+    /// The axes of the outputs that `place` shows, of floors the top.
+    pub fn axes(&self, place: Place) -> Vec<PlotAxis> {
+        let structure = &self.structure;
+        let axis = |of: Output| {
+            let Legend { label, symbol, .. } = of.legend().expect("a place shows it");
+            let name = of.name(structure);
+            let symbol = name.replacen(of.symbol(), symbol, 1);
+            PlotAxis { name, label, symbol, unit: ReadUnit::in_pictures(of.unit(), structure.base().g) }
+        };
+        let is_top = |of: &Output| of.number().is_none_or(|number| number + 1 == structure.floors().len());
+        Output::shown_in(place, structure).into_iter().filter(is_top).map(axis).collect()
     }
 }
 

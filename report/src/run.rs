@@ -20,9 +20,14 @@ use std::sync::Arc;
 /// Name and unit of a quantity.
 pub type Named = (String, &'static str);
 
-/// Names and units of the peaks of a floor, and of the storey below the floor.
-pub const OF_FLOOR: [(&str, &str); 7] =
-    [("h", "m"), ("u", "m"), ("drift", "m"), ("delta_t", "m"), ("a_t", "m/s2"), ("V", "N"), ("M", "N.m")];
+/// Names and units of the peaks of a floor, and of the storey below the floor, after its height.
+pub const OF_FLOOR: [(&str, &str); 7] = {
+    use Output::{M, V, a_t, delta_t, drift, u};
+    const fn of(output: Output) -> (&'static str, &'static str) {
+        (output.symbol(), output.unit())
+    }
+    [("h", "m"), of(u(0)), of(drift(0)), of(delta_t(0)), of(a_t(0)), of(V(0)), of(M(0))]
+};
 
 /// The usual periods of a floor spectrum: 100 from 0.02 to 4 s.
 pub fn usual_periods() -> Vec<f64> {
@@ -352,7 +357,7 @@ fn results<Q: Runs>(structure: &Structure, found: &fall::RunResult<Q>, transitio
 fn curve<Q: Runs>(run: &Run<Q>, part: f64) -> Result<MotionCurve, RunError> {
     let curve::RunCurve { points, transitions, found } = run.curve(part)?;
     let mut columns = vec![("a_g".to_owned(), points.iter().map(|at| at.a_g).collect())];
-    for (i, output) in curve::drawn(run).into_iter().enumerate() {
+    for (i, output) in Output::drawn(&run.structure.at(run.detail)).into_iter().enumerate() {
         columns.push((output.name(&run.structure), points.iter().map(|at| at.outputs[i]).collect()));
     }
     let (times, phases) = points.iter().map(|at| (at.time, at.phase)).unzip();

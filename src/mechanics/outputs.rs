@@ -16,6 +16,7 @@ use crate::mechanics::instant::{Instant, MassPoint, uplift};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::Dissipators;
+use crate::mechanics::shown::{Legend, Place, UNITS};
 use crate::numbers::{Number, Ordered};
 use crate::structure::gauge::Gauge;
 use crate::structure::mode::Modes;
@@ -66,18 +67,24 @@ struct OutputRow {
     search: Search,
     /// The variables of an FMU that it follows from directly; a state follows from what it starts from.
     from: &'static [&'static str],
+    /// If a picture shows it.
+    legend: Option<Legend>,
 }
 
-/// Declares [`Output`] by its rows: name, unit, description, what the documentation adds, and the rest of [`OutputRow`] in its order.
+/// The places of an output that all pictures over time show.
+const EVERYWHERE: &[Place] = &[Place::Histories, Place::OneMass, Place::Page, Place::Numbers];
+
+/// Declares [`Output`] by its rows: name, unit, description and what the documentation adds; label, symbol and places of an output that
+/// pictures show; and the rest of [`OutputRow`] in its order.
 macro_rules! outputs {
     ($($name:ident $(($i:ident: $number:ty))? [$unit:literal] $description:literal $($more:literal)?,
-        $of:ident $of_one:tt $search:ident, $from:expr;)*) => {
+        $({ $label:literal $symbol:literal $places:expr })? $of:ident $of_one:tt $search:ident, $from:expr;)*) => {
         /// An output of a structure. Floors and storeys count from 0, from below; storey i is below floor i.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
         #[allow(non_camel_case_types)] // the names of the outputs
         pub enum Output {
             $(
-                #[doc = concat!("The ", $description, $(", ", $more,)? ", ", $unit, ".")]
+                #[doc = concat!("The ", $description, $(", ", $symbol,)? $(", ", $more,)? ", ", $unit, ".")]
                 $name $(($number))?,
             )*
         }
@@ -94,12 +101,13 @@ macro_rules! outputs {
                     $(Output::$name { .. } => const { &OutputRow {
                         name: stringify!($name), unit: $unit, description: $description, of: Owner::$of, of_one: &$of_one,
                         search: Search::$search, from: $from,
+                        legend: [$(Some(Legend { label: $label, symbol: $symbol, places: $places }),)? None][0],
                     } },)*
                 }
             }
 
             /// The number of the floor, point or edge that has it.
-            fn number(self) -> Option<usize> {
+            pub fn number(self) -> Option<usize> {
                 match self {
                     $(Output::$name $(($i))? => [$(Some($i),)? None][0],)*
                 }
@@ -133,21 +141,25 @@ pub const ACCELERATION: &[&str] = &{
 /// The variables of an FMU that forces of contact points follow from.
 const CONTACT: &[&str] = &["y", "y_dot", "theta", "theta_dot"];
 
+use Place::{Feet, Floors, Histories, Numbers, OneMass, Page, PageOnGround, Scene, Storeys};
+
 outputs! {
-    theta ["rad"] "rotation of the base, positive about the right edge" "θ", Base [0, 0] Component, &[];
+    theta ["rad"] "rotation of the base, positive about the right edge", { "rotation" "θ" EVERYWHERE } Base [0, 0] Component, &[];
     theta_dot ["rad/s"] "angular velocity of the base" "θ̇", Base [5] None, &[];
-    uplift ["m"] "uplift of the free edge of the base (Eq 25)" "δ_u = 2 B sin|θ|",
+    uplift ["m"] "uplift of the free edge of the base (Eq 25)" "2 B sin|θ|", { "uplift" "δ_u" &[PageOnGround, Numbers] }
         Base [7, 3] Parts, &["theta", "B", "y"];
-    V_t ["N"] "base shear if all F_t are 0: the sum of m a_t (Eqs 2, 23)" "V_t", Base [3, 5] Linear, ACCELERATION;
-    M_t ["N.m"] "overturning moment if all F_t are 0: the sum of m h a_t (Eqs 3, 24)" "M_t",
+    V_t ["N"] "base shear if all F_t are 0: the sum of m a_t (Eqs 2, 23)", { "base shear" "V_t" &[Page, Numbers] }
+        Base [3, 5] Linear, ACCELERATION;
+    M_t ["N.m"] "overturning moment if all F_t are 0: the sum of m h a_t (Eqs 3, 24)", { "overturning moment" "M_t" &[Numbers] }
         Base [4, 6] Linear, ACCELERATION;
     y ["m"] "height of the middle of the base above the unloaded ground" "on ground that gives as all that follow but those of floors and ties",
-        Ground [] None, &[];
+        { "height of the base" "y" &[Scene] } Ground [] None, &[];
     settlement ["m"] "settlement of the lower outer contact point" "rotation included, −min(e); the middle of the base settles by −y",
-        Ground [] Parts, &["y", "theta"];
+        { "settlement of the lower edge" "s" &[PageOnGround, Numbers] } Ground [] Parts, &["y", "theta"];
     contact ["1"] "stiffness of the pressed contact points over the stiffness of all", Ground [] None, &[];
     E_foundation ["J"] "energy that the ground has taken", Ground [] None, &[];
-    x ["m"] "way of the middle of the base over the ground, to the right", Slide [] Component, &[];
+    x ["m"] "way of the middle of the base over the ground, to the right", { "way of the base" "x" &[Scene, PageOnGround, Numbers] }
+        Slide [] Component, &[];
     x_dot ["m/s"] "velocity of the middle of the base over the ground", Slide [] None, &[];
     slip_path ["m"] "sum of the slips of the base", Slide [] None, &[];
     E_friction ["J"] "energy that friction has taken", Slide [] None, &[];
@@ -155,25 +167,27 @@ outputs! {
     tilt ["rad"] "rotation of the contact points for good", Yield [] None, &[];
     E_plastic ["J"] "energy that settling for good has taken", Yield [] None, &[];
     s(i: usize) ["m"] "settlement of contact point # for good, from the left", YieldingPoint [] None, &[];
-    N_left ["N"] "force of the left outer contact point", Ground [] Parts, CONTACT;
-    N_right ["N"] "force of the right outer contact point", Ground [] Parts, CONTACT;
+    N_left ["N"] "force of the left outer contact point", { "force of the left edge" "N_left" &[PageOnGround, Numbers] }
+        Ground [] Parts, CONTACT;
+    N_right ["N"] "force of the right outer contact point", { "force of the right edge" "N_right" &[PageOnGround, Numbers] }
+        Ground [] Parts, CONTACT;
     pressure ["N/m"] "largest pressure under the base: the mean over the outer sixth at each edge, or of an inner point over its strip",
         Points [] Parts, CONTACT;
     N(i: usize) ["N"] "force of contact point # from the left", Point [] Component, CONTACT;
-    u(i: usize) ["m"] "elastic displacement of floor # in the frame that turns with the base" "u_i",
+    u(i: usize) ["m"] "elastic displacement of floor # in the frame that turns with the base", { "elastic displacement" "u" EVERYWHERE }
         Floor [1, 1] Component, &["u"];
     u_dot(i: usize) ["m/s"] "elastic velocity of floor #" "u̇_i", Floor [6] None, &["u_dot"];
-    drift(i: usize) ["m"] "drift of storey #" "u_i − u_{i−1}", Floor [] Component, &["u"];
+    drift(i: usize) ["m"] "drift of storey #" "u_i − u_{i−1}", { "drift" "drift" &[Storeys] } Floor [] Component, &["u"];
     drift_ratio(i: usize) ["1"] "drift of storey # over its height", Floor [] Component, &["u"];
-    delta_t(i: usize) ["m"] "lateral displacement of floor # relative to the ground (Eq 26)" "δ_i = sB (1 − cos θ) + u_i cos θ + h_i sin θ",
-        Floor [8, 2] Linear, &["u", "theta", "H", "B"];
+    delta_t(i: usize) ["m"] "lateral displacement of floor # relative to the ground (Eq 26)" "sB (1 − cos θ) + u_i cos θ + h_i sin θ",
+        { "displacement" "δ_t" &[OneMass, Numbers] } Floor [8, 2] Linear, &["u", "theta", "H", "B"];
     v_t(i: usize) ["m/s"] "lateral velocity of floor # relative to the ground" "u̇_i cos θ + [(sB − u_i) sin θ + h_i cos θ] θ̇",
         Floor [9] None, &["u", "u_dot", "theta", "theta_dot", "H", "B"];
-    a_t(i: usize) ["m/s2"] "lateral acceleration of floor #, ground included (Eq 27)" "along the turning e_x a_i",
-        Floor [2, 4] Linear, ACCELERATION;
-    V(i: usize) ["N"] "shear of storey # if all F_t are 0: the sum of m a_t above it" "V_i",
+    a_t(i: usize) ["m/s2"] "lateral acceleration of floor #, ground included (Eq 27)" "along the turning e_x",
+        { "acceleration" "a_t" &[Histories, OneMass, Page, Numbers, Floors] } Floor [2, 4] Linear, ACCELERATION;
+    V(i: usize) ["N"] "shear of storey # if all F_t are 0: the sum of m a_t above it", { "storey shear" "V" &[Storeys] }
         Floor [] Linear, ACCELERATION;
-    M(i: usize) ["N.m"] "overturning moment at the foot of storey # if all F_t are 0" "M_i",
+    M(i: usize) ["N.m"] "overturning moment at the foot of storey # if all F_t are 0", { "storey moment" "M" &[Feet] }
         Floor [] Linear, ACCELERATION;
     sunk(i: usize) ["m"] "settlement of outer contact point #" "left (0) or right (1), or 0 above the unloaded ground",
         Edge [] Component, &[];
@@ -271,6 +285,45 @@ impl Output {
         all
     }
 
+    /// What people read of it, if a picture shows it.
+    pub fn legend(self) -> Option<&'static Legend> {
+        self.row().legend.as_ref()
+    }
+
+    /// Whether a place shows it which is `meant`.
+    fn is_shown(self, meant: impl Fn(Place) -> bool) -> bool {
+        self.row().legend.is_some_and(|legend| legend.places.iter().any(|place| meant(*place)))
+    }
+
+    /// The outputs of `structure` that `place` shows, in the order of their units and rows, those of ground that gives last.
+    pub fn shown_in(place: Place, structure: &Structure) -> Vec<Output> {
+        let is_there = match place {
+            Place::PageOnGround => structure.foundation().is_some(),
+            Place::OneMass => structure.is_one_mass(),
+            _ => true,
+        };
+        let mut shown = Output::all(structure);
+        shown.retain(|output| is_there && output.is_shown(|of| of == place));
+        let rank = |of: &Output| UNITS.iter().position(|unit| unit.of == of.unit()).unwrap_or(UNITS.len());
+        let row = |of: &Output| EACH.iter().position(|each| each.symbol() == of.symbol());
+        shown.sort_by_key(|of| (of.is_of_ground(), rank(of), row(of)));
+        shown
+    }
+
+    /// The outputs of `structure` at the points of a picture over time, and the forces of ties.
+    pub fn drawn(structure: &Structure) -> Vec<Output> {
+        let ties = Output::OF_TIES.into_iter().filter(|_| structure.base().is_restrained());
+        let is_drawn = |output: &Output| output.is_shown(|place| place < Place::Floors);
+        Output::all(structure).into_iter().filter(is_drawn).chain(ties).collect()
+    }
+
+    /// The outputs of a floor or storey that pictures over the height show, and where.
+    pub fn over_height() -> impl Iterator<Item = (Output, Place)> {
+        let at =
+            |place| EACH.iter().filter(move |output| output.is_shown(|of| of == place)).map(move |of| (*of, place));
+        [Place::Floors, Place::Storeys, Place::Feet].into_iter().flat_map(at)
+    }
+
     /// The outputs of `structure` whose bounds are found for a search of their own.
     pub(crate) fn bounded(structure: &Structure) -> impl Iterator<Item = Output> {
         Output::meant(structure, |row| !matches!(row.search, Search::None | Search::Parts))
@@ -351,7 +404,7 @@ impl Output {
     }
 
     /// The output as a multiple of `other`, if it is one in every motion of `structure`.
-    pub(crate) fn over(self, other: Output, structure: &Structure) -> Option<f64> {
+    pub fn over(self, other: Output, structure: &Structure) -> Option<f64> {
         match [self, other].map(|of| of.displaced(structure)) {
             [Some((shape, factor)), Some((other, of_other))] => (shape == other).then(|| factor / of_other),
             [None, None] => self.gauge(structure)?.over(other.gauge(structure)?),

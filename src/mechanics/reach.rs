@@ -160,10 +160,13 @@ impl Structure {
 }
 
 impl Output {
-    /// The magnitude that is usual in a motion of `structure`: the bound where all others are usual. None on ground that gives, of which a
-    /// bound tells little.
+    /// The magnitude that is usual in a motion of `structure`: of the force of a tie the weight, of others the bound where all others are
+    /// usual. None on ground that gives, of which a bound tells little.
     pub fn usual(self, structure: &Structure) -> Option<f64> {
-        let (usual, &Base { g, p_l, tan_alpha_cg, .. }) = (structure.usual::<Modes>(), structure.base());
+        let (usual, &Base { m_t, g, p_l, tan_alpha_cg, .. }) = (structure.usual::<Modes>(), structure.base());
+        if Output::OF_TIES.contains(&self) {
+            return Some(m_t * g);
+        }
         let load = Load { a_g: g * tan_alpha_cg, ..Load::default() };
         let most = magnitudes(structure, Phase::Rocking(Side::Right), &[load; 2], usual);
         let x = Instant { theta_ddot: Most(p_l * usual.theta_dot), ..most.instant(structure) };

@@ -21,7 +21,7 @@ const DIVISIONS: u32 = 30;
 /// takes.
 const NEARLY: f64 = 16.0;
 
-/// More points of one mass are no picture: 130 MB. Points of many masses are larger and fewer.
+/// More points of one mass are no picture: 150 MB. Points of many masses are larger and fewer.
 const MOST_POINTS: usize = 1_000_000;
 
 /// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
@@ -33,21 +33,6 @@ pub(super) fn lines(structure: &Structure) -> Vec<Output> {
         if structure.is_one_mass() { &[Output::theta] } else { &[Output::theta, Output::V_t, Output::M_t] };
     let of_floors = (0..structure.floors().len()).flat_map(|i| [Output::u(i), Output::a_t(i)]);
     of_base.iter().copied().chain(of_floors).collect()
-}
-
-/// The outputs on ground that gives at the points of a picture. Straight lines follow the first two, the forces of the outer points.
-const OF_GROUND: [Output; 5] = [Output::N_left, Output::N_right, Output::y, Output::uplift, Output::settlement];
-
-/// The outputs of `run` at the points of a picture: its lines, those on ground that gives, the displacement of one mass, and the
-/// forces of ties.
-pub fn drawn<Q: Coordinates>(run: &Run<Q>) -> Vec<Output> {
-    let structure = &run.structure.at(run.detail);
-    let mut drawn = lines(structure);
-    drawn.extend(structure.foundation().iter().flat_map(|_| OF_GROUND));
-    drawn.extend(structure.foundation().and_then(|of| of.mu_c).map(|_| Output::x));
-    drawn.extend(structure.is_one_mass().then_some(Output::delta_t(0)));
-    drawn.extend(Output::OF_TIES.into_iter().filter(|_| structure.base().is_restrained()));
-    drawn
 }
 
 /// The peak of each of `lines` among `peaks`.
@@ -64,7 +49,7 @@ pub struct CurvePoint {
     pub phase: Phase,
     /// Ground acceleration, m/s².
     pub a_g: f64,
-    /// Outputs of the structure, in the order of [`drawn`].
+    /// Outputs of the structure, in the order of [`Output::drawn`].
     pub outputs: Vec<f64>,
 }
 
@@ -82,7 +67,7 @@ pub struct RunCurve<Q: Coordinates = f64> {
 pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<RunCurve<Q>, RunError> {
     let (found, peaks) = find(run, &mut ())?;
     let (mut lines, structure, a_g) = (lines(&run.structure), &run.structure.at(run.detail), found.ground);
-    lines.extend(OF_GROUND[..2].iter().flat_map(|of| of.parts(structure)).map(|(part, _)| part));
+    lines.extend([Output::N_left, Output::N_right].iter().flat_map(|of| of.parts(structure)).map(|(part, _)| part));
     let peaks = Vec::from_iter(peaks_of(&lines, &peaks));
     let mut tracer = Tracer {
         within: peaks.iter().map(|peak| part * peak.magnitude).collect(),
@@ -90,7 +75,7 @@ pub(super) fn trace<Q: Starts>(run: &Run<Q>, part: f64) -> Result<RunCurve<Q>, R
         pga: a_g.magnitude,
         most: 10 * MOST_POINTS / (7 + peaks.len()),
         lines,
-        drawn: drawn(run),
+        drawn: Output::drawn(structure),
         points: Vec::new(),
         transitions: Vec::new(),
         is_torn: true,

@@ -2,13 +2,14 @@
 
 use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
+use rocking::mechanics::shown::UNITS;
 use rocking::names::unknown;
 use rocking::run::fall::RunResult;
 use rocking::run::residual::{RESIDUALS, Residual};
 use rocking::run::{Ending, Run, RunError, Runs};
 use rocking::{Output, Structure};
 use smallvec::{SmallVec, smallvec};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 /// Outcome of a run.
@@ -91,20 +92,6 @@ impl MeasurePlaces {
     }
 }
 
-/// Usual units of limits: name, unit of the measure, and how many of that one it is; g is the structure's own.
-const USUAL_UNITS: [(&str, &str, Option<f64>); 10] = [
-    ("deg", "rad", Some(PI / 180.0)),
-    ("mrad", "rad", Some(1e-3)),
-    ("%", "rad", Some(1e-2)),
-    ("cm", "m", Some(1e-2)),
-    ("mm", "m", Some(1e-3)),
-    ("g", "m/s2", None),
-    ("cm/s2", "m/s2", Some(1e-2)),
-    ("kN", "N", Some(1e3)),
-    ("kN.m", "N.m", Some(1e3)),
-    ("%", "1", Some(1e-2)),
-];
-
 /// Limit that a run can exceed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Limit {
@@ -171,8 +158,7 @@ impl Outcome {
 
 /// A `value` in a usual `unit`, or in the own unit of a measure, in that own unit; `g` in m/s².
 fn in_own_unit(value: f64, unit: &str, g: f64) -> f64 {
-    let usual = USUAL_UNITS.iter().find(|(usual, ..)| *usual == unit);
-    value * usual.map_or(1.0, |(.., factor)| factor.unwrap_or(g))
+    value * UNITS.iter().find(|usual| usual.name == unit).map_or(1.0, |usual| usual.size(g))
 }
 
 impl Limit {
@@ -193,7 +179,7 @@ impl Limit {
         let own = meant.first().map(|at| &*measures[*at].1);
         let is_unknown = || Refused::by(unknown(format_args!("{name:?} is unknown"), name, &known()));
         let own = own.ok_or_else(is_unknown)?;
-        let usual = USUAL_UNITS.into_iter().filter_map(|(usual, of, _)| (of == own).then_some(usual));
+        let usual = UNITS.iter().filter(|usual| usual.of == own).map(|usual| usual.name);
         let units: Vec<_> = [own].into_iter().chain(usual).collect();
         let in_unit = |unit| Some((given.strip_suffix(unit)?.trim_end().parse().ok()?, unit));
         let value = given.parse().ok().map(|value| (value, own)).or(units.iter().copied().find_map(in_unit));

@@ -3,7 +3,7 @@
 use crate::common::sampled;
 use crate::modes::three_storeys;
 use approx::assert_relative_eq;
-use rocking::run::curve::{CurvePoint, RunCurve, drawn};
+use rocking::run::curve::{CurvePoint, RunCurve};
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, Runs};
 use rocking::{Detail, OneMass, Output, Parameters, Phase, Sample, State, TransitionKind};
@@ -22,24 +22,30 @@ fn on_the_line(points: &[CurvePoint], time: f64) -> Vec<f64> {
     from.zip(to).map(|(from, to)| from * (1.0 - part) + to * part).collect()
 }
 
-/// The curve of `run` to `part` of each largest value. Its lines pass through the peaks of the first `count` drawn outputs and of
-/// the ground. They stay as close to samples every 0.1 ms; `see` gets each sample and the lines there.
-fn near_the_motion<Q: Runs>(run: &Run<Q>, part: f64, count: usize, see: impl Fn(&Sample<Q>, &[f64])) -> RunCurve<Q> {
+/// The curve of `run` to `part` of each largest value. Its lines pass through the peaks of these `outputs` and of the ground. They stay
+/// as close to samples every 0.1 ms; `see` gets each sample and the lines there.
+fn near_the_motion<Q: Runs>(
+    run: &Run<Q>,
+    part: f64,
+    outputs: &[Output],
+    see: impl Fn(&Sample<Q>, &[f64]),
+) -> RunCurve<Q> {
     let curve = run.curve(part).unwrap();
     let (found, points) = (&curve.found, &curve.points);
     assert_eq!(*found, run.found(&mut ()).unwrap());
-    let outputs = &drawn(run)[..count];
+    let drawn = Output::drawn(&run.structure);
+    let place = |of: &Output| drawn.iter().position(|drawn| drawn == of).unwrap();
     let largest = Vec::from_iter(outputs.iter().map(|of| found.peaks.of(*of).unwrap().magnitude));
     let of_ground = found.ground.magnitude;
     let most = |of: &dyn Fn(&CurvePoint) -> f64| points.iter().map(|point| of(point).abs()).fold(0.0, f64::max);
     assert_relative_eq!(most(&|point| point.a_g), of_ground, max_relative = 1e-9);
-    for (i, largest) in largest.iter().enumerate() {
-        assert_relative_eq!(most(&|point| point.outputs[i]), *largest, max_relative = 1e-9);
+    for (of, largest) in outputs.iter().zip(&largest) {
+        assert_relative_eq!(most(&|point| point.outputs[place(of)]), *largest, max_relative = 1e-9);
     }
     let show = |sample: &Sample<Q>| {
         let line = on_the_line(points, sample.motion.time);
         for (i, of) in outputs.iter().enumerate() {
-            let missed = (line[i] - sample.output(*of)).abs();
+            let missed = (line[place(of)] - sample.output(*of)).abs();
             assert!(missed <= part * largest[i].max(1e-12), "{:?} {part} {of:?}: {missed}", run.detail);
         }
         assert!((line[line.len() - 1] - sample.load.a_g).abs() < 1e-12 * of_ground, "{:?}", run.detail);
@@ -57,8 +63,9 @@ fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
     let structure = OneMass::new(Parameters::MCMANUS).unwrap();
     for detail in Detail::ALL {
         let run = Run { detail, end: End::At(8.0), ..Run::new(structure, &ground) };
-        near_the_motion(&run, 1e-4, 3, |_, _| ());
-        let curve = near_the_motion(&run, 1e-2, 3, |_, _| ());
+        let lines = [Output::theta, Output::u(0), Output::a_t(0)];
+        near_the_motion(&run, 1e-4, &lines, |_, _| ());
+        let curve = near_the_motion(&run, 1e-2, &lines, |_, _| ());
         assert!(curve.transitions.len() > 10 || detail == Detail::FixedBase);
         assert!(curve.points.is_sorted_by(|a, b| a.time <= b.time));
         assert_eq!(curve.points.last().unwrap().time, curve.found.finish.motion.time);
@@ -90,10 +97,13 @@ fn lines_of_many_masses_stay_as_close_to_each_floor() {
     let frame = three_storeys(0.02, &[("r", 0.93), ("P_0", 1e5), ("k_t", 1e6)]);
     let ground = ground();
     let run = Run { end: End::At(6.0), ..Run::of_modes(frame, &ground) };
-    let (count, theta) = (drawn(&run).len() - Output::OF_TIES.len(), run.peaks().unwrap().0.theta().magnitude);
-    let curve = near_the_motion(&run, 1e-3, count, |sample, line| {
+    let theta = run.peaks().unwrap().0.theta().magnitude;
+    let of_floors = (0..3).flat_map(|i| [Output::u(i), Output::a_t(i)]);
+    let lines = Vec::from_iter([Output::theta, Output::V_t, Output::M_t].into_iter().chain(of_floors));
+    let tendon = Output::drawn(&run.structure).len() - Output::OF_TIES.len();
+    let curve = near_the_motion(&run, 1e-3, &lines, |sample, line| {
         let e = 2.0 * 1.5 * f64::sin(sample.motion.state.theta.abs() / 2.0);
-        assert!((line[count] - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * theta, "{} {e}", line[count]);
+        assert!((line[tendon] - 1e5 - 1e6 * e).abs() <= 1.1e-3 * 1.5e6 * theta, "{} {e}", line[tendon]);
     });
     let transitions = curve.found.finish.motion.transitions;
     assert!(transitions > 5 && curve.transitions.len() as u64 == transitions);

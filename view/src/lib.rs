@@ -1,6 +1,7 @@
 //! A run as a page that shows the structure in motion, one file that needs nothing else, and as what such a page draws.
 #![allow(non_snake_case)] // P_t, k_t
 
+use rocking::mechanics::shown::Legend;
 use rocking::run::Ending;
 use serde::Serialize;
 
@@ -34,6 +35,8 @@ pub struct ShownScene {
     pub part: f64,
     /// Time of each point.
     pub time: Quanta,
+    /// What is shown, in its order.
+    pub quantities: Vec<ShownQuantity>,
     /// By name; of a restrained structure also the forces of the tendon and of the dissipators.
     pub columns: Vec<(String, Quanta)>,
     /// Index of the first point of each phase, and the phase.
@@ -44,6 +47,24 @@ pub struct ShownScene {
     pub peaks: Vec<DrawnPeak>,
     /// The peaks on a fixed base, of many masses.
     pub fixed: Vec<DrawnPeak>,
+}
+
+/// A quantity as the page shows it, an output of floors once.
+#[derive(Serialize)]
+pub struct ShownQuantity {
+    /// Its name in the columns and peaks, without the number of a floor.
+    pub name: &'static str,
+    /// Its label, symbol and places.
+    #[serde(flatten)]
+    pub legend: Legend,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The size of its unit in SI units.
+    pub per: f64,
+    /// Units of the axis of a history, their sizes, and from and below which largest magnitude it has them.
+    pub axes: Vec<(&'static str, f64, f64, f64)>,
+    /// The quantity of which it is a multiple in every motion, and the factor.
+    pub over: Option<(&'static str, f64)>,
 }
 
 /// Name, magnitude in SI units, instant (s).
@@ -62,8 +83,8 @@ pub struct Sizes {
     /// Lowest frequency in full contact.
     pub f_fc: f64,
     pub g: f64,
-    /// The name of each tie's force, and its place along the base.
-    pub ties: Vec<(&'static str, f64)>,
+    /// The name of each tie's force, its place along the base, and the size and name of its unit.
+    pub ties: Vec<(&'static str, f64, f64, &'static str)>,
     /// Places of the contact points on ground that gives.
     pub points: Vec<f64>,
     /// Mass and height of each floor from below, of many masses.
@@ -74,23 +95,26 @@ pub struct Sizes {
 #[derive(Serialize)]
 pub struct Quanta {
     quantum: f64,
-    /// Of time the differences.
+    /// The differences from 0 on.
     values: Vec<i64>,
 }
 
 impl Quanta {
+    fn of(values: &[f64], quantum: f64) -> Quanta {
+        let whole = values.iter().map(|value| (value / quantum).round() as i64);
+        let differences = whole.scan(0, |before, value| Some(value - std::mem::replace(before, value)));
+        Quanta { quantum, values: differences.collect() }
+    }
+
     /// Of the `values` of the points.
     pub fn new(values: &[f64]) -> Quanta {
         let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let quantum = if most > 0.0 { QUANTUM * most } else { 1.0 };
-        Quanta { quantum, values: values.iter().map(|value| (value / quantum).round() as i64).collect() }
+        Quanta::of(values, if most > 0.0 { QUANTUM * most } else { 1.0 })
     }
 
     /// Of the `times` of the points since `start` (s).
     pub fn of_time(times: &[f64], start: f64) -> Quanta {
-        let instants = times.iter().map(|time| quanta(time - start));
-        let differences = instants.scan(0, |before, instant| Some(instant - std::mem::replace(before, instant)));
-        Quanta { quantum: QUANTUM_OF_TIME, values: differences.collect() }
+        Quanta::of(&Vec::from_iter(times.iter().map(|time| time - start)), QUANTUM_OF_TIME)
     }
 }
 

@@ -8,15 +8,15 @@ function motionView() {
 
   /** What the engine wrote, with its columns as numbers. */
   function decode(data) {
-    const column = ({ quantum, values }) => Float64Array.from(values, (value) => value * quantum);
-    let sum = 0;
-    const time = Float64Array.from(data.time.values, (difference) => data.start + (sum += difference) * data.time.quantum);
+    const column = ({ quantum, values }, start = 0, sum = 0) => Float64Array.from(values, (difference) => start + (sum += difference) * quantum);
+    const time = column(data.time, data.start);
     const values = Object.fromEntries(data.columns.map(([name, of]) => [name, column(of)]));
-    if (data.parameters.floors?.length === 1) for (const name of ["u", "a_t"]) values[name] = values[`${name}[1]`]; // as of one mass
+    if (data.parameters.floors?.length === 1) for (const { name } of data.quantities) if (values[`${name}[1]`]) values[name] = values[`${name}[1]`]; // as of one mass
     const peaks = (list) => Object.fromEntries(list.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
     const most = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
     return {
       ...data,
+      quantities: data.quantities.map((of) => ({ ...of, unit: of.unit.replace(".", " ") })),
       time,
       end: time.at(-1), // as exact as the instants of the transitions, the last of which may be there
       values,
@@ -36,6 +36,8 @@ function motionView() {
   /** The output `name`, of the floor that is shown if floors have it. */
   const own = (name) => (`${name}[${floor}]` in motion.peaks ? `${name}[${floor}]` : name);
   const peakOf = (name) => motion.peaks[own(name)];
+  /** What `place` shows of the motion, in its order. */
+  const shownIn = (place) => motion.quantities.filter(({ name, places }) => places.includes(place) && peakOf(name));
 
   /** How many of the rising numbers are at most `value`. */
   function countUpTo(numbers, value, of = (number) => number) {
@@ -50,7 +52,7 @@ function motionView() {
 
   /** Everything at the instant `t`; at a transition, just after it. */
   function stateAt(t) {
-    const { time, values, phases, ending, end, parameters } = motion;
+    const { time, values, phases, ending, end } = motion;
     const i = Math.max(0, countUpTo(time, t) - 1);
     const j = Math.min(i + 1, time.length - 1);
     const part = time[j] > time[i] ? (t - time[i]) / (time[j] - time[i]) : 0;
@@ -58,13 +60,8 @@ function motionView() {
     const state = Object.fromEntries(Object.entries(values).map(([name, values]) => [name, value(values)]));
     const overturned = ending === "overturned" && t >= end;
     const phase = overturned ? "overturned" : phases[countUpTo(phases, i, ([first]) => first) - 1][1];
-    const { m, H, B } = parameters;
-    const { theta } = state;
-    const [u, a_t, h] = floors() ? [state[own("u")], state[own("a_t")], floors()[floor - 1]?.[1] ?? H] : [state.u, state.a_t, H];
-    const uplift = 2 * B * Math.sin(Math.abs(theta));
-    const pivot = givesWay() ? 0 : Math.sign(theta) * B;
-    const delta_t = (state.x ?? 0) + pivot * (1 - Math.cos(theta)) + u * Math.cos(theta) + h * Math.sin(theta);
-    return { V_t: m * a_t, M_t: m * H * a_t, uplift, ...state, phase, u, a_t, delta_t };
+    const read = shownIn("Numbers").map(({ name }) => [name, state[own(name)]]);
+    return { ...state, ...Object.fromEntries(read), phase };
   }
 
   /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
@@ -118,29 +115,14 @@ function motionView() {
     return found.map((value) => ({ value, text: fixed(value, decimals) }));
   }
 
-  /** What is shown in numbers: symbol, meaning, unit and how many SI units that has; `g` stands for gravity. */
-  const quantities = {
-    a_g: { symbol: "a_g", meaning: "ground acceleration", unit: "g" },
-    theta: { symbol: "θ", meaning: "rotation", unit: "rad", per: 1 },
-    uplift: { symbol: "δ_u", meaning: "uplift", unit: "mm", per: 1e-3 },
-    u: { symbol: "u", meaning: "elastic displacement", unit: "mm", per: 1e-3 },
-    delta_t: { symbol: "δ_t", meaning: "displacement of the top", unit: "mm", per: 1e-3 },
-    a_t: { symbol: "a_t", meaning: "acceleration of the top", unit: "g" },
-    V_t: { symbol: "V_t", meaning: "base shear", unit: "kN", per: 1e3 },
-    M_t: { symbol: "M_t", meaning: "overturning moment", unit: "kN m", per: 1e3 },
-    settlement: { symbol: "s", meaning: "settlement of the lower edge", unit: "mm", per: 1e-3 },
-    N_left: { symbol: "N_left", meaning: "force of the left edge", unit: "kN", per: 1e3 },
-    N_right: { symbol: "N_right", meaning: "force of the right edge", unit: "kN", per: 1e3 },
-  };
+  const quantity = (name) => motion.quantities.find((of) => of.name === name);
   /** `value` of the quantity `name` in its unit, in as many digits as its peak has. */
   function inUnit(name, value) {
-    const per = quantities[name].per ?? motion.parameters.g;
+    const { per } = quantity(name);
     return fixed(value / per, decimalsFor(peakOf(name).magnitude / per));
   }
-  const meaningOf = (name) => {
-    const { meaning } = quantities[name];
-    return own(name) === name ? meaning : `${meaning.replace(" of the top", "")} of floor ${floor}`;
-  };
+  const withUnit = (name, value) => `${inUnit(name, value)} ${quantity(name).unit}`;
+  const meaningOf = (name) => (own(name) === name ? quantity(name).label : `${quantity(name).label} of floor ${floor}`);
 
   // ---- Drawing by elements
 
@@ -196,10 +178,10 @@ function motionView() {
     lines.replaceChildren();
     forces.replaceChildren();
     const text = element(forces, "text", { x, y: y + 56, "text-anchor": "middle" });
-    for (const [name, along] of [...motion.parameters.ties].sort((one, other) => one[1] - other[1])) {
+    for (const [name, along, per, unit] of [...motion.parameters.ties].sort((one, other) => one[1] - other[1])) {
       const top = place(along);
       element(lines, "line", { class: name === "P_t" ? "tendon" : "dissipator", x1: along, y1: 0, x2: top.x, y2: top.y });
-      element(text, "tspan", { dx: 10, "data-name": name }, `${name} ${significant(state[name] / 1e3)} kN`);
+      element(text, "tspan", { dx: 10, "data-name": name }, `${name} ${significant(state[name] / per)} ${unit}`);
     }
     // a spring of the ground ends at the base, or at the surface if the base is above it
     for (const xi of motion.parameters.points) {
@@ -285,7 +267,7 @@ function motionView() {
     const isSeen = lifts && -edge.y * scale > 2;
     set(at("gap"), { x1: edge.x, x2: edge.x, y1: 0, y2: edge.y, visibility: isSeen ? "visible" : "hidden" });
     const lift = at("lift");
-    lift.textContent = isSeen ? `${inUnit("uplift", state.uplift)} mm` : "";
+    lift.textContent = isSeen ? withUnit("uplift", state.uplift) : "";
     set(lift, { x: x + scale * edge.x - 8 * side, y: y + Math.min((scale * edge.y) / 2 + 4, -5), "text-anchor": side > 0 ? "end" : "start" });
     drawTies(state, place);
     drawShaking(state.a_g, width);
@@ -301,35 +283,30 @@ function motionView() {
     const [x, y, tip] = [stage.x, stage.y + 6, Math.sign(length) * Math.min(9, Math.abs(length))];
     set(line, { x1: x, x2: x + length - tip, y1: y, y2: y });
     set(head, { d: `M${x + length} ${y}l${-tip} -5v10z` });
-    text.textContent = motion.largest.a_g > 0 ? `a_g = ${inUnit("a_g", a_g)} g` : "ground at rest";
+    text.textContent = motion.largest.a_g > 0 ? `a_g = ${withUnit("a_g", a_g)}` : "ground at rest";
     set(text, { x: width - 12, y: stage.y + 32, "text-anchor": "end", class: "muted" });
   }
 
   // ---- Numbers at the cursor
 
-  const rows = {};
-  {
-    const row = at("readings").insertRow();
-    row.className = "phase";
-    row.innerHTML = '<th scope="row">phase</th><td colspan="3"></td>';
-    rows.phase = row;
-    for (const [name, { symbol, unit }] of Object.entries(quantities)) {
-      const row = at("readings").insertRow();
-      row.innerHTML = '<th scope="row"></th><td></td><td></td><td><button type="button"></button></td>';
-      row.cells[0].innerHTML = '<span class="meaning"></span><span></span>';
-      row.cells[0].lastChild.textContent = `${symbol} (${unit})`;
-      row.dataset.name = name;
-      row.cells[3].firstChild.addEventListener("click", () => moveTo(peakOf(name).instant));
-      rows[name] = row;
+  let rows = {};
+  function layOutNumbers() {
+    const names = shownIn("Numbers").map(({ name }) => name);
+    if (`${Object.keys(rows)}` !== `${["phase", ...names]}`) {
+      const made = (html) => Object.assign(document.createElement("tr"), { innerHTML: html });
+      rows = { phase: made('<th scope="row">phase</th><td colspan="3"></td>') };
+      rows.phase.className = "phase";
+      for (const name of names) {
+        rows[name] = made('<th scope="row"><span class="meaning"></span><span></span></th><td></td><td></td><td><button type="button"></button></td>');
+        rows[name].dataset.name = name;
+        rows[name].cells[3].firstChild.addEventListener("click", () => moveTo(peakOf(name).instant));
+      }
+      at("readings").replaceChildren(...Object.values(rows));
     }
-  }
-
-  function drawPeaks() {
-    for (const name of Object.keys(quantities)) {
-      rows[name].hidden = !peakOf(name);
-      if (rows[name].hidden) continue;
+    for (const { name, symbol, unit } of shownIn("Numbers")) {
       const { magnitude, instant } = peakOf(name);
       rows[name].cells[0].firstChild.textContent = `${meaningOf(name)} `;
+      rows[name].cells[0].lastChild.textContent = `${symbol} (${unit})`;
       rows[name].cells[2].textContent = inUnit(name, magnitude);
       const button = rows[name].cells[3].firstChild;
       button.textContent = `${fixed(instant, 3)} s`;
@@ -339,7 +316,7 @@ function motionView() {
 
   function drawNumbers(state) {
     rows.phase.cells[1].textContent = state.phase;
-    for (const name of Object.keys(quantities)) if (peakOf(name)) rows[name].cells[1].textContent = inUnit(name, state[name]);
+    for (const { name } of shownIn("Numbers")) rows[name].cells[1].textContent = inUnit(name, state[name]);
     at("clock").textContent = `${fixed(t, 3)} of ${fixed(motion.end, 3)} s`;
     const slider = at("time");
     slider.value = t;
@@ -348,13 +325,14 @@ function motionView() {
 
   // ---- Peaks over the height
 
-  /** Values of floors or storeys `v` and the peak of the ground as points over the heights `h` from the base on. */
-  const overHeight = [
-    { name: "a_t", title: "acceleration (g)", points: (v, h, a_g) => [a_g, ...v].map((x, i) => [x, h[i]]) },
-    { name: "drift", title: "drift (mm)", per: 1e-3, points: (v, h) => v.flatMap((x, i) => [[x, h[i]], [x, h[i + 1]]]) },
-    { name: "V", title: "storey shear (kN)", per: 1e3, points: (v, h) => v.flatMap((x, i) => [[x, h[i]], [x, h[i + 1]]]) },
-    { name: "M", title: "moment (kN m)", per: 1e3, points: (v, h) => [...v, 0].map((x, i) => [x, h[i]]) },
-  ];
+  /** Values of floors or storeys `v` and the peak of the ground as points over the heights `h` from the base on, by place. */
+  const overHeight = {
+    Floors: (v, h, a_g) => [a_g, ...v].map((x, i) => [x, h[i]]),
+    Storeys: (v, h) => v.flatMap((x, i) => [[x, h[i]], [x, h[i + 1]]]),
+    Feet: (v, h) => [...v, 0].map((x, i) => [x, h[i]]),
+  };
+  const profiles = () => Object.entries(overHeight).flatMap(([place, points]) =>
+    shownIn(place).map((of) => ({ ...of, points, title: `${of.label} (${of.unit})` })));
 
   /** The choice of a floor, and the table of peaks, from the top down. */
   function layOutFloors() {
@@ -367,9 +345,12 @@ function motionView() {
     at("floor").value = floor;
     const cell = (content, of) => Object.assign(document.createElement(of), { textContent: content });
     const hasFixed = "V_t" in motion.fixed;
+    const columns = profiles();
+    const headings = ["floor", "height (m)", ...columns.flatMap(({ symbol, unit }) => [`${symbol} (${unit})`, "fixed base"])];
+    at("columns").replaceChildren(...headings.map((of) => Object.assign(cell(of, "th"), { scope: "col" })));
     at("peaks").replaceChildren(...Array.from({ length: count }, (_, k) => {
       const [i, row] = [count - k, document.createElement("tr")];
-      const peaks = overHeight.flatMap(({ name, per = motion.parameters.g }) => {
+      const peaks = columns.flatMap(({ name, per }) => {
         const value = (of) => significant(of[`${name}[${i}]`].magnitude / per);
         return [value(motion.peaks), hasFixed ? value(motion.fixed) : "–"];
       });
@@ -388,7 +369,8 @@ function motionView() {
     const columns = width <= 540 ? 2 : 4; // as in the style
     const [left, gap, high] = [44, 24, (height * columns) / 4];
     const wide = (width - left - columns * gap) / columns;
-    overHeight.forEach(({ name, title, per = motion.parameters.g, points }, k) => {
+    const drawn = profiles();
+    drawn.forEach(({ name, title, per, points }, k) => {
       const from = left + (k % columns) * (wide + gap);
       const [top, bottom] = [24, high - 20].map((y) => y + Math.floor(k / columns) * high);
       const y = (height) => bottom - (height / motion.parameters.H) * (bottom - top);
@@ -412,7 +394,7 @@ function motionView() {
         element(svg, "path", { class: "curve", style: `stroke:var(${colour});stroke-dasharray:${dashes}`, d });
       }
     });
-    const titles = overHeight.map(({ title }) => title).join(", ");
+    const titles = drawn.map(({ title }) => title).join(", ");
     set(svg, { "aria-label": `Largest magnitudes over the height: ${titles}; the table has the numbers` });
   }
 
@@ -421,27 +403,17 @@ function motionView() {
   let panels = [];
   let lanes = [];
   function layOutPanels() {
-    const { g, m } = motion.parameters;
-    const all = [motion, ...beside];
-    const most = (name) => Math.max(...all.map(({ largest }) => largest[own(name)] ?? largest[name] ?? 0));
-    const angle = most("theta") < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
-    panels = [
-      { name: "a_g", title: "a_g (g)", per: g, colour: "--grey" },
-      { name: "theta", title: `θ (${angle.unit})`, per: angle.per, colour: "--blue" },
-      { name: "u", title: "u (mm)", per: 1e-3, colour: "--blue" },
-      {
-        name: "a_t", title: "a_t (g)", per: g, colour: "--blue",
-        right: floors()?.length > 1 ? undefined : { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
-      },
-      ...(floors()?.length > 1 ? [{ name: "V_t", title: "V_t (kN)", per: 1e3, colour: "--blue" }] : []),
-      ...(givesWay() ? ["uplift", "settlement", "N_left", "N_right"] : []).map((name) => {
-        const { symbol, ...usual } = quantities[name];
-        const { unit, per } = usual.unit === "kN" && most(name) >= 1e7 ? { unit: "MN", per: 1e6 } : usual;
-        return { name, title: `${symbol} (${unit})`, per, colour: "--green" };
-      }),
-    ].filter(({ name }) => peakOf(name))
-      .map((panel) => ({ ...panel, meaning: meaningOf(panel.name), largest: most(panel.name) }))
-      .filter(({ name, largest }) => ["theta", "a_t"].includes(name) || largest > 0);
+    const most = (name) => Math.max(...[motion, ...beside].map(({ largest }) => largest[own(name)] ?? largest[name] ?? 0));
+    const coloured = { Page: "--blue", ...(givesWay() && { PageOnGround: "--green" }) };
+    const all = Object.entries(coloured).flatMap(([place, colour]) => shownIn(place).map((of) => ({ ...of, colour })));
+    const panel = ({ name, symbol, unit, per, axes, colour }) => {
+      const largest = most(name);
+      const [read, size] = axes.find(([, , from, below]) => from <= largest && largest < (below ?? Infinity)) ?? [unit, per];
+      const multiple = all.find(({ over }) => over?.[0] === name);
+      const right = multiple && { meaning: multiple.label, title: `${multiple.symbol} (${multiple.unit})`, factor: (multiple.over[1] * size) / multiple.per };
+      return { name, title: `${symbol} (${read})`, per: size, colour: name === "a_g" ? "--grey" : colour, right, meaning: meaningOf(name), largest };
+    };
+    panels = all.filter(({ over }) => !over).map(panel).filter(({ name, largest }) => ["theta", "a_t"].includes(name) || largest > 0);
     document.body.style.setProperty("--panels", `${panels.length}`);
     lanes = kinds
       .map((kind) => ({ ...kind, times: motion.transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
@@ -768,7 +740,7 @@ function motionView() {
   function showMotion() {
     layOutPanels();
     describe();
-    drawPeaks();
+    layOutNumbers();
     layOut();
   }
 
@@ -780,7 +752,7 @@ function motionView() {
     document.title = `${title}: rocking structure`;
     const peaks = panels.map(({ name, meaning }) => {
       const { magnitude, instant } = peakOf(name);
-      return `${meaning}, peak ${inUnit(name, magnitude)} ${quantities[name].unit} at ${fixed(instant, 3)} s`;
+      return `${meaning}, peak ${withUnit(name, magnitude)} at ${fixed(instant, 3)} s`;
     });
     set(at("histories"), { "aria-label": `Histories: ${peaks.join("; ")}` });
     at("title").textContent = title;

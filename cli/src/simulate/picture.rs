@@ -5,10 +5,11 @@ use crate::picture::{
 use plotters::prelude::*;
 use rocking::Structure;
 use rocking::digits::short;
+use rocking::mechanics::shown::Place;
 use rocking::run::{Ending, RunError};
 use rocking::{TransitionKind, run::peaks::Peak};
 use rocking_report::page::{Sizes, sizes};
-use rocking_report::quantities::in_readable_unit;
+use rocking_report::quantities::{PlotAxis, in_readable_unit};
 use rocking_report::run::{MotionCurve, RunReport, RunSetup};
 use rocking_report::summary::instant;
 
@@ -67,39 +68,31 @@ pub fn draw(picture: Picture, run: &RunSetup) -> anyhow::Result<()> {
 
 /// Ground acceleration, rotation, displacements and acceleration; of many masses those of the top floor.
 fn panels(run: &RunSetup, curve: &MotionCurve) -> Vec<Panel> {
-    let g = run.structure.base().g;
+    let is_one = run.structure.is_one_mass();
     let peak = |name: &str| curve.found.peak(name).unwrap_or_default();
-    // `unit` is how many SI units it has, and what it is called
-    let panel = |(label, (per_unit, unit), name, more): (&str, (f64, &str), &str, Option<String>)| {
-        let (_, values) = curve.columns.iter().find(|(of, _)| of == name)?;
+    let uplift = || format!(", uplift {} mm", rounded(1e3 * peak("uplift").magnitude));
+    let V_t = || format!(", V_t {}", in_readable_unit(peak("V_t").magnitude, "N", rounded));
+    let panel = |PlotAxis { name, label, symbol, unit: (per_unit, unit) }: PlotAxis| {
+        let (_, values) = curve.columns.iter().find(|(of, _)| *of == name)?;
         let points: Vec<_> = curve.times.iter().zip(values).map(|(time, value)| (*time, value / per_unit)).collect();
-        let Peak { magnitude, time } = peak(name);
+        let Peak { magnitude, time } = peak(&name);
         let after = curve.times.partition_point(|before| *before < time);
         let beside = points[after.saturating_sub(1)..points.len().min(after + 2)].iter();
         // of the points beside the peak the largest has its sign
         let sign = beside.map(|point| point.1).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(1.0).signum();
-        let words = format!("{} {unit}", rounded(magnitude / per_unit))
-            + &more.map_or(String::new(), |more| format!(", {more}"));
+        let more = match &*name {
+            "theta" if is_one => uplift(),
+            "a_t" => V_t(),
+            _ => String::new(),
+        };
+        let words = format!("{} {unit}{more}", rounded(magnitude / per_unit));
         let peak = (magnitude > 0.0).then_some((time, sign * magnitude / per_unit, words));
         let colour = if name == "a_g" { colour::GREY } else { colour::BLUE };
+        let label = if symbol.ends_with(']') { symbol } else { format!("{label} {symbol}") }; // what fits
         Some(Panel { name: format!("{label} ({unit})"), colour, points, peak })
     };
-    let (mm, rad, in_g) = ((1e-3, "mm"), (1.0, "rad"), (g, "g"));
-    if !run.structure.is_one_mass() {
-        let [u, a_t] = ["u", "a_t"].map(|of| format!("{of}[{}]", run.structure.floors().len()));
-        let base = [("ground a_g", in_g, "a_g", None), ("rotation θ", rad, "theta", None)];
-        return base.into_iter().chain([(&*u, mm, &*u, None), (&*a_t, in_g, &*a_t, None)]).filter_map(panel).collect();
-    }
-    let uplift = format!("uplift {} mm", rounded(1e3 * peak("uplift").magnitude));
-    let V_t = format!("V_t {}", in_readable_unit(peak("V_t").magnitude, "N", rounded));
-    let shown = [
-        ("ground acceleration", in_g, "a_g", None),
-        ("rotation θ", rad, "theta", Some(uplift)),
-        ("displacement u", mm, "u", None),
-        ("displacement δ_t", mm, "delta_t", None),
-        ("acceleration a_t", in_g, "a_t", Some(V_t)),
-    ];
-    shown.into_iter().filter_map(panel).collect()
+    let place = if is_one { Place::OneMass } else { Place::Histories };
+    [run.of_ground()].into_iter().chain(run.axes(place)).filter_map(panel).collect()
 }
 
 /// The structure and what became of it, in a line.

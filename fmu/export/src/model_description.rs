@@ -2,6 +2,7 @@
 
 use crate::{Version, units};
 use FlexibleRocking::resources::Contents;
+use FlexibleRocking::source::Source;
 use FlexibleRocking::variables::VariableTable;
 use fmi_unit::Variable;
 use model_description::{DefaultExperiment, ModelDescription};
@@ -14,15 +15,13 @@ pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happe
 
 /// The text of the description of the FMU `name` with these `contents`.
 pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment: DefaultExperiment) -> String {
-    let (structure, variables) = (&contents.structure, VariableTable::new(contents).variables);
-    let variables: Vec<_> = variables
-        .iter()
-        .map(|variable| Variable {
-            display_unit: units::display_unit(variable, structure).map(Into::into),
-            nominal: units::nominal(variable, structure),
-            ..variable.clone()
-        })
-        .collect();
+    let (structure, VariableTable { variables, sources }) = (&contents.structure, VariableTable::new(contents));
+    let described = |(variable, source): (&Variable, &Source)| Variable {
+        display_unit: units::display_unit(variable).map(Into::into),
+        nominal: units::nominal(variable, *source, structure),
+        ..variable.clone()
+    };
+    let variables: Vec<_> = variables.iter().zip(&*sources).map(described).collect();
     let description = ModelDescription {
         name,
         token: FlexibleRocking::guid(contents),

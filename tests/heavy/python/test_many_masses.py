@@ -227,7 +227,7 @@ def test_the_spectrum_of_a_floor_is_that_of_its_acceleration(run):
 
 def test_pictures_of_a_building_show_its_top_and_its_height(run, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "agg")
-    assert [axis.get_ylabel() for axis in run.plot().axes][2:] == ["$u$[10] (mm)", "$a_t$[10] (g)"]
+    assert [axis.get_ylabel() for axis in run.plot().axes][2:] == ["$u$[10] (mm)", "$a_{t}$[10] (g)"]
     axes = run.plot("profile").axes
     assert [line.get_label() for line in axes[0].lines] == ["rocking", "fixed base"]
     fixed = fr.simulate(building(), wavelet(), detail="fixed_base", duration=run.end - run.start)
