@@ -33,7 +33,7 @@ mod _native {
     #[pymodule_export]
     use super::run::{PyRun, simulate};
     #[pymodule_export]
-    use super::structure::PyStructure;
+    use super::structure::{PyStructure, numbers_of, varied};
     #[pymodule_export]
     use super::sweep::{PyCurve, columns_of, exceeds, fragility, heading_of, overturning_map, sweep};
     #[pymodule_export]

@@ -13,11 +13,13 @@ use rocking::estimates::modal_split::{ModalAccelerations, ModalRotations};
 use rocking::estimates::pushover::{Equilibrium, Pushover};
 use rocking::estimates::restoring::FlagPoint;
 use rocking::structure::derived::{Derived, OF_MODE};
+use rocking::structure::description::Description;
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::PRESETS;
 use rocking::{OneMass, Side, State};
 use rocking_report::structure_file::{self, OF_MANY, of_table};
 use rocking_report::{describe, input};
+use std::collections::HashMap;
 use std::path::PathBuf;
 use toml::Table;
 
@@ -55,6 +57,22 @@ pub struct PyStructure {
 pub fn argument(value: &Bound<'_, PyAny>) -> PyResult<Py<PyStructure>> {
     let needed = || PyTypeError::new_err(format!("structure = {value:?} is no Structure: Structure(m=...) makes one"));
     Ok(value.cast::<PyStructure>().map_err(|_| needed())?.clone().unbind())
+}
+
+/// The numbers of `structure` that can have other values, with unit, value, and least and largest value.
+#[pyfunction]
+pub fn numbers_of(structure: &PyStructure) -> Vec<(String, &'static str, f64, f64, f64)> {
+    let all = structure.of.description().map_or_else(Vec::new, Description::numbers);
+    all.into_iter().map(|of| (of.name, of.unit, of.value, of.min, of.max)).collect()
+}
+
+/// `structure` with these values of its [`numbers_of`], without warnings.
+#[pyfunction]
+pub fn varied(structure: &PyStructure, values: HashMap<String, f64>) -> PyResult<PyStructure> {
+    let Some(of) = structure.of.description() else { return Ok(PyStructure { of: structure.of.clone() }) };
+    let numbers = of.numbers().into_iter().map(|of| values.get(&of.name).copied().unwrap_or(of.value));
+    let varied = of.with(&Vec::from_iter(numbers)).structure().map_err(refused)?;
+    Ok(PyStructure { of: varied.measured_in(structure.of.units()) })
 }
 
 impl PartialEq for PyStructure {
