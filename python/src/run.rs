@@ -9,11 +9,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
-use rocking::mechanics::shown::{Place, ReadUnit};
+use rocking::mechanics::shown::{Legend, Place, in_pictures};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::Limits;
 use rocking::{Detail, Output, Phase};
-use rocking_report::quantities::{PlotAxis, PrintedNumber};
+use rocking_report::quantities::PrintedNumber;
 use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup, SampledMotion, usual_periods};
 use rocking_report::validity::{Beyond, rows};
 use rocking_sweep::plan::Conditions;
@@ -220,15 +220,14 @@ impl PyRun {
     #[pyo3(signature = (kind="history"))]
     fn plot<'py>(slf: Bound<'py, Self>, kind: &str) -> PyResult<Bound<'py, PyAny>> {
         let of = &slf.get().of;
-        let history = |axis: PlotAxis| {
-            let (symbol, number) = axis.symbol.split_at(axis.symbol.find('[').unwrap_or(axis.symbol.len()));
+        let history = |(name, Legend { symbol, .. }, (size, unit)): (String, Legend, (f64, &str))| {
             let symbol = symbol.split_once('_').map_or(symbol.into(), |(of, below)| format!("{of}_{{{below}}}"));
-            (axis.name, format!("${symbol}${number} ({})", axis.unit.1), axis.unit.0)
+            let label = format!("${symbol}${} ({unit})", &name[name.find('[').unwrap_or(name.len())..]);
+            (name, label, size)
         };
-        let histories = [of.of_ground()].into_iter().chain(of.axes(Place::Histories)).map(history);
+        let histories = of.histories(Place::Histories).into_iter().map(history);
         let height = |(output, place): (Output, Place)| {
-            let (label, (size, unit)) =
-                (output.legend()?.label, ReadUnit::in_pictures(output.unit(), of.structure.base().g));
+            let (label, (size, unit)) = (output.legend()?.label, in_pictures(output.unit(), of.structure.base().g));
             Some((format!("{place:?}"), output.symbol(), format!("{label} ({unit})"), size))
         };
         let axes = (Vec::from_iter(histories), Vec::from_iter(Output::over_height().filter_map(height)));

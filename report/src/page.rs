@@ -1,7 +1,7 @@
 //! The page that shows a run, and its content.
 
 use crate::run::{MotionCurve, RunReport, RunSetup};
-use rocking::mechanics::shown::{GROUND, Legend, Place, ReadUnit, Reader, UNITS};
+use rocking::mechanics::shown::{GROUND, Legend, Place, Reader, UNITS, in_pictures};
 use rocking::run::RunError;
 use rocking::structure::derived::OF_MODE;
 use rocking::{Body, Detail, Output, Structure};
@@ -60,9 +60,9 @@ fn quantities(structure: &Structure) -> Vec<ShownQuantity> {
     let g = structure.base().g;
     let [numbers, histories] = [Place::Numbers, Place::Page].map(|place| Output::shown_in(place, structure));
     let quantity = |name, legend: Legend, of: &'static str, over| {
-        let (per, unit) = ReadUnit::in_pictures(of, g);
-        let axis = |read: &ReadUnit| match read.reader {
-            Reader::Axes(from, below) if read.of == of => Some((read.name, read.size(g), from, below)),
+        let (per, unit) = in_pictures(of, g);
+        let axis = |(name, unit, size, reader): &(&'static str, _, Option<f64>, _)| match reader {
+            Reader::Axes(from, below) if *unit == of => Some((*name, size.unwrap_or(g), *from, *below)),
             _ => None,
         };
         ShownQuantity { name, legend, unit, per, axes: UNITS.iter().filter_map(axis).collect(), over }
@@ -83,7 +83,7 @@ pub fn sizes(structure: &Structure) -> Sizes {
     let (base, shown) = (structure.base(), Output::with_peak(structure));
     let ties = Output::OF_TIES.into_iter().zip([0.0, base.ties.xi_d, -base.ties.xi_d]);
     let tie = |(of, along): (Output, f64)| {
-        let (per, unit) = ReadUnit::in_pictures(of.unit(), base.g);
+        let (per, unit) = in_pictures(of.unit(), base.g);
         (of.symbol(), along, per, unit)
     };
     let ties = ties.filter(|(of, _)| shown.contains(of)).map(tie).collect();

@@ -2,7 +2,7 @@
 use crate::run::RunSetup;
 use rocking::Output;
 use rocking::digits::significant;
-use rocking::mechanics::shown::{GROUND, Legend, Place, ReadUnit};
+use rocking::mechanics::shown::{GROUND, Legend, Place, in_pictures};
 use serde::{Serialize, Serializer};
 
 /// One value, its unit (`1` for a ratio) and the equation of the paper that defines it.
@@ -26,7 +26,7 @@ impl NamedValue {
 /// The unit in which people read the peak of a motion of this `magnitude`: its size in SI units, and its name; `g` in m/s². Forces
 /// and moments below 1000 stay in SI units.
 pub fn of_motion(magnitude: f64, unit: &str, g: f64) -> (f64, &str) {
-    let (per_unit, name) = ReadUnit::in_pictures(unit, g);
+    let (per_unit, name) = in_pictures(unit, g);
     if per_unit >= 1e3 && magnitude.abs() < per_unit { (1.0, unit) } else { (per_unit, name) }
 }
 
@@ -35,37 +35,15 @@ pub fn readable(magnitude: f64, unit: &str) -> (f64, &str) {
     if matches!(unit, "N" | "N.m") { of_motion(magnitude, unit, 1.0) } else { (1.0, unit) }
 }
 
-/// A quantity on an axis of a picture.
-pub struct PlotAxis {
-    /// Its name among the results of a run.
-    pub name: String,
-    /// Its label in words.
-    pub label: &'static str,
-    /// Its symbol in an equation, with the number of a floor.
-    pub symbol: String,
-    /// Its unit, and the size of the unit in SI units.
-    pub unit: (f64, &'static str),
-}
-
 impl RunSetup {
-    /// The axis of the ground acceleration.
-    pub fn of_ground(&self) -> PlotAxis {
-        let Legend { label, symbol, .. } = GROUND;
-        let unit = ReadUnit::in_pictures("m/s2", self.structure.base().g);
-        PlotAxis { name: symbol.into(), label, symbol: symbol.into(), unit }
-    }
-
-    /// The axes of the outputs that `place` shows, of floors the top.
-    pub fn axes(&self, place: Place) -> Vec<PlotAxis> {
-        let structure = &self.structure;
-        let axis = |of: Output| {
-            let Legend { label, symbol, .. } = of.legend().expect("a place shows it");
-            let name = of.name(structure);
-            let symbol = name.replacen(of.symbol(), symbol, 1);
-            PlotAxis { name, label, symbol, unit: ReadUnit::in_pictures(of.unit(), structure.base().g) }
-        };
+    /// The ground acceleration and the outputs that `place` shows, of floors the top, each with its name, and the size (SI) and name of its
+    /// unit.
+    pub fn histories(&self, place: Place) -> Vec<(String, Legend, (f64, &'static str))> {
+        let (structure, g) = (&self.structure, self.structure.base().g);
         let is_top = |of: &Output| of.number().is_none_or(|number| number + 1 == structure.floors().len());
-        Output::shown_in(place, structure).into_iter().filter(is_top).map(axis).collect()
+        let outputs = Output::shown_in(place, structure).into_iter().filter(is_top);
+        let named = outputs.filter_map(|of| Some((of.name(structure), *of.legend()?, in_pictures(of.unit(), g))));
+        [(GROUND.symbol.into(), GROUND, in_pictures("m/s2", g))].into_iter().chain(named).collect()
     }
 }
 

@@ -304,7 +304,7 @@ impl Output {
         };
         let mut shown = Output::all(structure);
         shown.retain(|output| is_there && output.is_shown(|of| of == place));
-        let rank = |of: &Output| UNITS.iter().position(|unit| unit.of == of.unit()).unwrap_or(UNITS.len());
+        let rank = |of: &Output| UNITS.iter().position(|unit| unit.1 == of.unit()).unwrap_or(UNITS.len());
         let row = |of: &Output| EACH.iter().position(|each| each.symbol() == of.symbol());
         shown.sort_by_key(|of| (of.is_of_ground(), rank(of), row(of)));
         shown

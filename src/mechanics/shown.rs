@@ -54,48 +54,25 @@ pub enum Reader {
     Limits,
 }
 
-/// A unit in the place of one of SI.
-#[derive(Clone, Copy, Debug)]
-pub struct ReadUnit {
-    /// Its name.
-    pub name: &'static str,
-    /// The unit of SI, as FMI writes it.
-    pub of: &'static str,
-    /// Its size in that unit; None is g, the structure's own.
-    size: Option<f64>,
-    /// Who reads it.
-    pub reader: Reader,
-}
-
-const fn unit(name: &'static str, of: &'static str, size: f64, reader: Reader) -> ReadUnit {
-    ReadUnit { name, of, size: Some(size), reader }
-}
-
-/// The units beside those of SI.
-pub const UNITS: [ReadUnit; 12] = [
-    unit("deg", "rad", PI / 180.0, Reader::Hosts),
-    unit("mrad", "rad", 1e-3, Reader::Axes(0.0, 0.1)),
-    unit("%", "rad", 1e-2, Reader::Limits),
-    unit("cm", "m", 1e-2, Reader::Limits),
-    unit("mm", "m", 1e-3, Reader::All),
-    unit("ms", "s", 1e-3, Reader::Hosts),
-    ReadUnit { name: "g", of: "m/s2", size: None, reader: Reader::All },
-    unit("cm/s2", "m/s2", 1e-2, Reader::Limits),
-    unit("kN", "N", 1e3, Reader::All),
-    unit("MN", "N", 1e6, Reader::Axes(1e7, f64::INFINITY)),
-    unit("kN.m", "N.m", 1e3, Reader::All),
-    unit("%", "1", 1e-2, Reader::Limits),
+/// The units in the place of those of SI: the name, the unit of SI as FMI writes it, the size there (None is g, the structure's own), and who
+/// reads it.
+pub const UNITS: [(&str, &str, Option<f64>, Reader); 12] = [
+    ("deg", "rad", Some(PI / 180.0), Reader::Hosts),
+    ("mrad", "rad", Some(1e-3), Reader::Axes(0.0, 0.1)),
+    ("%", "rad", Some(1e-2), Reader::Limits),
+    ("cm", "m", Some(1e-2), Reader::Limits),
+    ("mm", "m", Some(1e-3), Reader::All),
+    ("ms", "s", Some(1e-3), Reader::Hosts),
+    ("g", "m/s2", None, Reader::All),
+    ("cm/s2", "m/s2", Some(1e-2), Reader::Limits),
+    ("kN", "N", Some(1e3), Reader::All),
+    ("MN", "N", Some(1e6), Reader::Axes(1e7, f64::INFINITY)),
+    ("kN.m", "N.m", Some(1e3), Reader::All),
+    ("%", "1", Some(1e-2), Reader::Limits),
 ];
 
-impl ReadUnit {
-    /// Its size in the unit of SI; `g` in m/s².
-    pub fn size(&self, g: f64) -> f64 {
-        self.size.unwrap_or(g)
-    }
-
-    /// The size and the name of the unit in the place of `unit` (SI) in pictures; `g` in m/s².
-    pub fn in_pictures(unit: &str, g: f64) -> (f64, &str) {
-        let read = UNITS.iter().find(|read| read.of == unit && read.reader == Reader::All);
-        read.map_or((1.0, unit), |read| (read.size(g), read.name))
-    }
+/// The size and the name of the unit in the place of `unit` (SI) in pictures; `g` in m/s².
+pub fn in_pictures(unit: &str, g: f64) -> (f64, &str) {
+    let read = UNITS.iter().find(|(_, of, _, reader)| *of == unit && *reader == Reader::All);
+    read.map_or((1.0, unit), |(name, _, size, _)| (size.unwrap_or(g), *name))
 }

@@ -158,7 +158,7 @@ impl Outcome {
 
 /// A `value` in a usual `unit`, or in the own unit of a measure, in that own unit; `g` in m/s².
 fn in_own_unit(value: f64, unit: &str, g: f64) -> f64 {
-    value * UNITS.iter().find(|usual| usual.name == unit).map_or(1.0, |usual| usual.size(g))
+    value * UNITS.iter().find(|(usual, ..)| *usual == unit).map_or(1.0, |(_, _, size, _)| size.unwrap_or(g))
 }
 
 impl Limit {
@@ -179,7 +179,7 @@ impl Limit {
         let own = meant.first().map(|at| &*measures[*at].1);
         let is_unknown = || Refused::by(unknown(format_args!("{name:?} is unknown"), name, &known()));
         let own = own.ok_or_else(is_unknown)?;
-        let usual = UNITS.iter().filter(|usual| usual.of == own).map(|usual| usual.name);
+        let usual = UNITS.iter().filter(|(_, of, ..)| *of == own).map(|(usual, ..)| *usual);
         let units: Vec<_> = [own].into_iter().chain(usual).collect();
         let in_unit = |unit| Some((given.strip_suffix(unit)?.trim_end().parse().ok()?, unit));
         let value = given.parse().ok().map(|value| (value, own)).or(units.iter().copied().find_map(in_unit));

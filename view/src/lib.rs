@@ -49,21 +49,18 @@ pub struct ShownScene {
     pub fixed: Vec<DrawnPeak>,
 }
 
-/// A quantity as the page shows it, an output of floors once.
+/// A quantity as the page shows it, an output of floors once: its name without the number of a floor; its unit, and the size of that in SI
+/// units; units of the axis of its history, their sizes, and from and below which largest magnitude it has them; the quantity of which it is a
+/// multiple in every motion, and the factor.
 #[derive(Serialize)]
+#[allow(missing_docs)]
 pub struct ShownQuantity {
-    /// Its name in the columns and peaks, without the number of a floor.
     pub name: &'static str,
-    /// Its label, symbol and places.
     #[serde(flatten)]
     pub legend: Legend,
-    /// Its unit.
     pub unit: &'static str,
-    /// The size of its unit in SI units.
     pub per: f64,
-    /// Units of the axis of a history, their sizes, and from and below which largest magnitude it has them.
     pub axes: Vec<(&'static str, f64, f64, f64)>,
-    /// The quantity of which it is a multiple in every motion, and the factor.
     pub over: Option<(&'static str, f64)>,
 }
 

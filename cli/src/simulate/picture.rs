@@ -5,11 +5,11 @@ use crate::picture::{
 use plotters::prelude::*;
 use rocking::Structure;
 use rocking::digits::short;
-use rocking::mechanics::shown::Place;
+use rocking::mechanics::shown::{Legend, Place};
 use rocking::run::{Ending, RunError};
 use rocking::{TransitionKind, run::peaks::Peak};
 use rocking_report::page::{Sizes, sizes};
-use rocking_report::quantities::{PlotAxis, in_readable_unit};
+use rocking_report::quantities::in_readable_unit;
 use rocking_report::run::{MotionCurve, RunReport, RunSetup};
 use rocking_report::summary::instant;
 
@@ -72,7 +72,7 @@ fn panels(run: &RunSetup, curve: &MotionCurve) -> Vec<Panel> {
     let peak = |name: &str| curve.found.peak(name).unwrap_or_default();
     let uplift = || format!(", uplift {} mm", rounded(1e3 * peak("uplift").magnitude));
     let V_t = || format!(", V_t {}", in_readable_unit(peak("V_t").magnitude, "N", rounded));
-    let panel = |PlotAxis { name, label, symbol, unit: (per_unit, unit) }: PlotAxis| {
+    let panel = |(name, Legend { label, symbol, .. }, (per_unit, unit)): (String, Legend, (f64, &str))| {
         let (_, values) = curve.columns.iter().find(|(of, _)| *of == name)?;
         let points: Vec<_> = curve.times.iter().zip(values).map(|(time, value)| (*time, value / per_unit)).collect();
         let Peak { magnitude, time } = peak(&name);
@@ -88,11 +88,14 @@ fn panels(run: &RunSetup, curve: &MotionCurve) -> Vec<Panel> {
         let words = format!("{} {unit}{more}", rounded(magnitude / per_unit));
         let peak = (magnitude > 0.0).then_some((time, sign * magnitude / per_unit, words));
         let colour = if name == "a_g" { colour::GREY } else { colour::BLUE };
-        let label = if symbol.ends_with(']') { symbol } else { format!("{label} {symbol}") }; // what fits
+        let label = match name.find('[') {
+            Some(number) => format!("{symbol}{}", &name[number..]), // what fits
+            None => format!("{label} {symbol}"),
+        };
         Some(Panel { name: format!("{label} ({unit})"), colour, points, peak })
     };
     let place = if is_one { Place::OneMass } else { Place::Histories };
-    [run.of_ground()].into_iter().chain(run.axes(place)).filter_map(panel).collect()
+    run.histories(place).into_iter().filter_map(panel).collect()
 }
 
 /// The structure and what became of it, in a line.

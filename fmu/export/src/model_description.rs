@@ -17,7 +17,7 @@ pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happe
 pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment: DefaultExperiment) -> String {
     let (structure, VariableTable { variables, sources }) = (&contents.structure, VariableTable::new(contents));
     let described = |(variable, source): (&Variable, &Source)| Variable {
-        display_unit: units::display_unit(variable).map(Into::into),
+        display_unit: units::display_unit(variable, structure).map(Into::into),
         nominal: units::nominal(variable, *source, structure),
         ..variable.clone()
     };

@@ -2,27 +2,24 @@
 
 use FlexibleRocking::source::Source;
 use fmi_unit::{DataType, Variable};
-use rocking::mechanics::shown::{ReadUnit, Reader, UNITS};
+use rocking::mechanics::shown::{Reader, UNITS};
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Base, Body, Modes, Output, Structure};
-
-/// The units that hosts can show in the place of those of SI.
-fn of_hosts() -> impl Iterator<Item = &'static ReadUnit> {
-    UNITS.iter().filter(|unit| matches!(unit.reader, Reader::All | Reader::Hosts))
-}
 
 /// Units, what hosts can show in the place of each, and the factor of a value then. The g of an acceleration is the structure's own, as in
 /// a record.
 pub fn display_units(structure: &Structure) -> Vec<(&'static str, &'static str, f64)> {
-    of_hosts().map(|unit| (unit.of, unit.name, 1.0 / unit.size(structure.base().g))).collect()
+    let shown = UNITS.iter().filter(|(.., reader)| matches!(reader, Reader::All | Reader::Hosts));
+    shown.map(|(name, of, size, _)| (*of, *name, 1.0 / size.unwrap_or(structure.base().g))).collect()
 }
 
 /// The unit that `variable` is shown in, if that is another than its own. The structure's own parameters are in SI, as in its file, and
 /// instants in seconds: they are looked up in a record.
-pub fn display_unit(variable: &Variable) -> Option<&'static str> {
+pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'static str> {
     let DataType::Real { unit, .. } = variable.data_type else { return None };
     let is_parameter = PARAMETERS.iter().any(|parameter| parameter.name == variable.name);
-    of_hosts().find(|shown| shown.of == unit && unit != "s" && !is_parameter).map(|shown| shown.name)
+    let shown = display_units(structure).into_iter().find(|(of, ..)| *of == unit).map(|(_, shown, _)| shown);
+    shown.filter(|_| unit != "s" && !is_parameter)
 }
 
 /// The magnitude that is usual for `variable` from `source` in a motion, to three digits: under the acceleration g tan α_cg, which lifts the
