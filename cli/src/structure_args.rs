@@ -77,7 +77,7 @@ impl StructureArgs {
                 say!("structure      mcmanus, the default: choose another with --preset or --parameters");
                 Structure::new(Parameters::MCMANUS)?
             }
-            (None, None) => Structure::new(numbers.parameters(on_command_line)?)?,
+            (None, None) => numbers.parameters(on_command_line).and_then(|_| numbers.structure(None))?,
         })
     }
 }

@@ -8,7 +8,6 @@ use rocking::estimates::restoring::{FlagPoint, flag};
 use rocking::run::validity;
 use rocking::structure::derived::{DERIVED, Derived, OF_MODE};
 use rocking::structure::description::Description;
-use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Structure};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::{self, Write};
@@ -22,10 +21,12 @@ pub fn given(structure: &Structure) -> Vec<NamedValue> {
 
 /// The derived quantities of one mass; the numbers of a structure of many masses.
 pub fn derived(structure: &Structure) -> Vec<NamedValue> {
+    let equation = |name: &str| DERIVED.iter().find(|of| structure.is_one_mass() && of.name == name);
     let number = |([name, unit, description], value): ([&'static str; 3], f64)| {
-        NamedValue::new(name, value, unit, "", description)
+        NamedValue::new(name, value, unit, equation(name).map_or("", |of| of.equation), description)
     };
-    let is_given = |name: &str| structure.is_one_mass() && PARAMETERS.iter().any(|of| of.name == name);
+    let given = given(structure);
+    let is_given = |name: &str| given.iter().any(|of| of.name == name);
     let of_any = || structure.derived().filter(|([name, ..], _)| !is_given(name)).map(number).collect();
     structure.one().map_or_else(of_any, |one| named(&DERIVED, one))
 }

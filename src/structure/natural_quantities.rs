@@ -187,10 +187,10 @@ impl Numbers {
         Numbers { ground: ground.into(), ..self }
     }
 
-    /// The parameters that these numbers determine on rigid ground, with default values for the rest. If some are missing, each number to
-    /// give has the name by which it is `called` in the input.
+    /// The parameters that these numbers determine on rigid ground, with default values for the rest; r is 1 without one. If some are
+    /// missing, each number to give has the name by which it is `called` in the input.
     pub fn parameters(&self, called: impl Fn(&str) -> String) -> Result<Parameters, Refused> {
-        self.solve(&called, &Parameters::DEFAULTS)
+        self.solve(&called, &Parameters { r: 1.0, ..Parameters::DEFAULTS })
     }
 
     /// The parameters `base` changed by these numbers. α_cg changes H, or B if H is given.
