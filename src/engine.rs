@@ -349,7 +349,8 @@ impl<Q: Coordinates> Engine<Q> {
     pub fn rates(&self, load: LinearLoad<Q>) -> Rates<'_, Q> {
         let Motion { phase, state, .. } = &self.motion;
         let [second, third] = self.derivatives(load);
-        let x = Instant::moving(self.structure(), *phase, state, &second, load);
+        let state = self.level.admissible(*phase, *state);
+        let x = Instant::moving(self.structure(), *phase, &state, &second, load);
         let u_ddot = Duals { value: second.u_ddot, rate: third.u_ddot };
         let theta_ddot = Dual { value: second.theta_ddot, rate: third.theta_ddot };
         Rates { x, second: Second { u_ddot, theta_ddot }, is_over: phase.properties().is_over }
@@ -550,7 +551,8 @@ impl<Q: Coordinates> Rates<'_, Q> {
     #[inline(never)]
     pub fn of(&self, output: Output) -> f64 {
         let Rates { x, ref second, is_over } = *self;
-        if is_over { 0.0 } else { output.of(&x.accelerated(second)).rate }
+        let rate = || output.added_up_rate(&x).unwrap_or_else(|| output.of(&x.accelerated(second)).rate);
+        if is_over { 0.0 } else { rate() }
     }
 
     /// The rates of the reactions.

@@ -39,6 +39,7 @@ def floors(*names):
 
 
 SPRINGS = "f_v = 12\nzeta_v = 0.1\nn_points = 3"
+MOVES = "f_v = 12\nzeta_v = 0.1\nn_points = 11\nmu_c = 0.25\nfs = 3"
 INTERFACES = [(fmi, kind) for fmi in (2, 3) for kind in ("CoSimulation", "ModelExchange")]
 
 
@@ -50,7 +51,8 @@ def exact_response(tied):
 @pytest.mark.parametrize("fmi, kind, tied, ground", [
     *((*interface, tied, "") for interface in INTERFACES for tied in (False, True)),
     *((*interface, tied, SPRINGS) for interface, tied in zip(INTERFACES, (False, False, True, True))),
-], ids=lambda of: "springs" if of == SPRINGS else str(of))
+    *((*interface, tied, MOVES) for interface, tied in zip(INTERFACES, (True, False, False, True))),
+], ids=lambda of: {SPRINGS: "springs", MOVES: "slides and settles"}.get(of, str(of)))
 def test_the_fmu_moves_as_the_librarys_run_and_as_the_physical_equations_say(exporter, export_frame, fmi, kind, tied, ground):
     """All outputs at the samples to 1e-12 of the peak of each, up to the last sample, at which the ground stops; on rigid ground θ, and u
     and a of every floor, to 1e-9 of the peaks. To 1e-4 and 1e-5 with fmpy's integrator. Peaks to 1e-8 of the run's."""
@@ -66,7 +68,8 @@ def test_the_fmu_moves_as_the_librarys_run_and_as_the_physical_equations_say(exp
     outputs = [of.variable.name for of in fmu.description.outputs if not of.variable.name.startswith("I_")]
     columns = {name: columns[name] for name in outputs if name in columns}
     assert len(columns) > 25 and (not ground or {"N_left", "N_right", "settlement", "contact"} <= set(columns))
-    peaks = [*floors("u_max", "a_t_max"), "theta_max", "V_t_max", "M_t_max"]
+    assert ground != MOVES or {"x", "x_dot", "slip_path", "E_friction", "settled", "tilt", "E_plastic", "s[11]"} <= set(columns)
+    peaks = [*floors("u_max", "a_t_max"), "theta_max", "V_t_max", "M_t_max", *["x_max"] * (ground == MOVES)]
     found = fmpy.simulate_fmu(fmu.path, fmi_type=kind, stop_time=time[-1], output_interval=dt, start_values={"peaks": True},
                               output=[*columns, *peaks, "transitions"], relative_tolerance=1e-12 if is_exact else 1e-9)
     found = found[np.searchsorted(found["time"], time - 1e-9)]
@@ -104,15 +107,16 @@ def test_ground_is_known_and_a_fixed_base_has_no_outputs_of_it(export_frame):
 @pytest.mark.parametrize("fmi", (2, 3))
 def test_numbers_that_a_host_sets_are_those_that_an_export_has(export_frame, fmi):
     """To the last bit: the motion and all that is calculated. A refusal names the number."""
-    springs, stiff = "k_v = 5e8\nzeta_v = 0.1\nn_points = 3", FRAME.stiffness
+    springs, stiff = "k_v = 5e8\nzeta_v = 0.1\nn_points = 3\nmu_c = 0.4\nfs = 5", FRAME.stiffness
     softer, taller = replace(FRAME, stiffness=(stiff[0], 3e7, stiff[2])), replace(FRAME, masses=(5e4, *FRAME.masses[1:]), heights=(*FRAME.heights[:2], 11.5), zeta=0.03)
     cases = [({"B": 1.7}, (replace(FRAME, B=1.7), Ties(), springs)), ({"k[2]": 3e7}, (softer, Ties(), springs)),
              ({"m[1]": 5e4, "h[3]": 11.5, "zeta": 0.03}, (taller, Ties(), springs)),
-             ({"k_v": 7e8, "zeta_v": 0.3, "kr_ratio": 0.5}, (FRAME, Ties(), "k_v = 7e8\nzeta_v = 0.3\nkr_ratio = 0.5\nn_points = 3")),
+             ({"k_v": 7e8, "zeta_v": 0.3, "kr_ratio": 0.5}, (FRAME, Ties(), "k_v = 7e8\nzeta_v = 0.3\nkr_ratio = 0.5\nn_points = 3\nmu_c = 0.4\nfs = 5")),
+             ({"mu_c": 0.1, "fs": 1.2}, (FRAME, Ties(), springs.replace("0.4", "0.1").replace("fs = 5", "fs = 1.2"))),
              ({"P_0": 4e5, "k_t": 1e6}, (FRAME, Ties(P_0=4e5, k_t=1e6), springs))]
     base, _ = export_frame(ground=springs, fmi=fmi)
     calculated = [of.name for of in base.description.modelVariables if of.causality == "calculatedParameter"]
-    names = [*calculated, "theta", "y", "P_t", "V_t", *floors("u", "a_t"), "P_t_max", "N_left"]
+    names = [*calculated, "theta", "y", "P_t", "V_t", *floors("u", "a_t"), "P_t_max", "N_left", "x", "s[3]"]
 
     def moved(instance):
         instance.set(a_g=6.0)
@@ -187,6 +191,10 @@ KINDS = {
     "one mass": (MCMANUS, Ties(), 0.7, 0, "f_v = 40\nzeta_v = 0.2"),
     "one mass on a bed": (MCMANUS, Ties(), 0.35, 0, "f_v = 40\nzeta_v = 0\nn_points = 5"),
     "tied": (MCMANUS, ties_of(MCMANUS, 0.1), 1.4, 0, "f_v = 40\nzeta_v = 0.2"),
+    "one mass that slides": (MCMANUS, Ties(), 0.7, 0, "f_v = 40\nzeta_v = 0.2\nmu_c = 0.2"),
+    "one mass that settles": (MCMANUS, Ties(), 0.7, 0, "f_v = 40\nzeta_v = 0\nfs = 3"),
+    "one mass that slides and settles": (MCMANUS, Ties(), 0.7, 0, "f_v = 40\nzeta_v = 0.2\nn_points = 4\nmu_c = 0.2\nfs = 2"),
+    "storeys that slide": (FRAME, Ties(), 2, 2, "f_v = 12\nzeta_v = 0.1\nmu_c = 0.3"),
     "thrown up": (MCMANUS, Ties(), 0, 8, "f_v = 20\nzeta_v = 0.2"),
     "storeys": (FRAME, Ties(), 1.6, 0, "f_v = 12\nzeta_v = 0.1"),
     "storeys on a bed": (FRAME, Ties(), 1.6, 0, "f_v = 12\nzeta_v = 0.1\nn_points = 5"),

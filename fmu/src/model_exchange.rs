@@ -79,11 +79,23 @@ impl<Q: Runs> Scene<Q> {
         if let Some(far) = states.iter().position(|value| value.abs() > FARTHEST) {
             return Err(Refusal::FarState { name: names(far), value: states[far] }.into());
         }
-        let [.., theta, theta_dot] = *states else { unreachable!("the host gives a number for each state") };
+        let (lateral, settled) = states.split_at(2 * self.lateral);
+        let [theta, theta_dot, ref settled @ ..] = *settled else {
+            unreachable!("the host gives a number for each state")
+        };
+        if let Some(HostMotion { known, .. }) = &self.outside {
+            // whether the base slides follows from the state
+            let mut motion = *self.engine.motion();
+            motion.phase = known.motion.phase;
+            self.engine.set_motion(motion);
+        }
         let State { mut u, mut u_dot, .. } = self.engine.motion().state;
         for (j, at) in (0..self.lateral).filter_map(|j| Some((j, self.place(j)?))) {
-            u.set(at, states[j]);
-            u_dot.set(at, states[self.lateral + j]);
+            u.set(at, lateral[j]);
+            u_dot.set(at, lateral[self.lateral + j]);
+        }
+        for (i, s) in settled.iter().enumerate() {
+            self.settled(i).into_iter().for_each(|at| u.set(at, *s));
         }
         self.engine.set_state(State { u, u_dot, theta, theta_dot });
         Ok(())

@@ -3,7 +3,7 @@
 use fmi_unit::Logger;
 use rocking::run::Runs;
 use rocking::run::validity::{ASSUMPTIONS, Findings, Limits};
-use rocking::{Side, Transition, TransitionKind};
+use rocking::{Friction, Side, Transition, TransitionKind};
 
 /// Warns of the limits that `found` is beyond and `known`, found before, was not.
 pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
@@ -48,6 +48,13 @@ fn describe<Q: Runs>(is_one_mass: bool, transition: &Transition<Q>) -> String {
         TransitionKind::Touch(point) | TransitionKind::Release(point) => {
             format!("{} of contact point {}", kind.name(), point + 1)
         }
+        TransitionKind::Settles(point) => {
+            format!("contact point {} yields: the ground settles there for good", point + 1)
+        }
+        TransitionKind::Holds(point) => format!("contact point {} yields no more", point + 1),
+        TransitionKind::Friction(Friction::Sticks) => "the base sticks to the ground".to_owned(),
+        TransitionKind::Friction(Friction::Slides(way)) => format!("the base slides to the {}", side(way)),
+        TransitionKind::Friction(Friction::Free) => "the base leaves the ground".to_owned(),
         kind => kind.name().to_owned(),
     };
     let of_one = is_one_mass.then(|| {

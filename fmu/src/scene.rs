@@ -2,7 +2,7 @@
 //! found out about it since.
 
 use crate::failure::Refusal;
-use crate::floor_variables::{lateral_states, numbers};
+use crate::floor_variables::{lateral_states, numbers, settlements};
 use crate::ground::{CachedRecord, GroundRecord, RecordDigest};
 use crate::resources::Archive;
 use crate::setup::Setup;
@@ -35,6 +35,8 @@ pub struct Scene<Q: Runs = f64> {
     pub validity: Findings,
     /// How many lateral coordinates the table has.
     pub lateral: usize,
+    /// How many settlements for good it has.
+    pub settlements: usize,
     /// The structure at full detail.
     structure: Structure,
     /// The numbers that follow from its own, once they are asked for.
@@ -108,7 +110,8 @@ impl<Q: Runs> Scene<Q> {
         let structure = contents.with(&setup.numbers)?;
         let engine = setup.engine::<Q>(structure.clone(), setup.may_move_vertically(ground.as_ref()))?;
         let peaks = FallPeaks::since(setup.start_time, engine.structure(), setup.detail);
-        let (validity, lateral) = (Findings::since(setup.start_time), lateral_states(&contents.structure));
+        let validity = Findings::since(setup.start_time);
+        let [lateral, settlements] = [lateral_states, settlements].map(|count| count(&contents.structure));
         Ok(Scene {
             engine,
             source,
@@ -118,6 +121,7 @@ impl<Q: Runs> Scene<Q> {
             peaks,
             validity,
             lateral,
+            settlements,
             structure,
             known: OnceCell::new(),
         })
@@ -146,14 +150,25 @@ impl<Q: Runs> Scene<Q> {
     /// The numbers of a `state`, in the order of the table.
     pub fn components(&self, state: &State<Q>) -> Vec<f64> {
         let of = |coordinates: Q| (0..self.lateral).map(move |j| self.place(j).map_or(0.0, |at| coordinates.of(at)));
-        of(state.u).chain(of(state.u_dot)).chain([state.theta, state.theta_dot]).collect()
+        let settled = (0..self.settlements).map(|i| self.settled(i).map_or(0.0, |at| state.u.of(at)));
+        of(state.u).chain(of(state.u_dot)).chain([state.theta, state.theta_dot]).chain(settled).collect()
     }
 
-    /// The place in the engine of lateral coordinate `j` of the table, whose last is y on ground that gives; none of what does not move.
+    /// The place in the engine of lateral coordinate `j` of the table, whose last on ground that gives are y, and x of a base that may
+    /// slide; none of what does not move.
     pub fn place(&self, j: usize) -> Option<usize> {
         let (structure, modes) = (self.engine.structure(), self.engine.structure().modes().len());
-        let is_y = structure.foundation().is_some() && j + 1 == self.lateral;
-        (is_y || j < modes).then_some(if is_y { modes } else { j })
+        let Some(ground) = structure.foundation() else { return (j < modes).then_some(j) };
+        match (self.lateral - j, ground.slide()) {
+            (1, Some(slide)) => Some(slide),
+            (2, Some(_)) | (1, None) => Some(modes),
+            _ => (j < modes).then_some(j),
+        }
+    }
+
+    /// The place in the engine of the settlement of point `i` for good; none of what does not move.
+    pub fn settled(&self, i: usize) -> Option<usize> {
+        self.engine.structure().foundation().map(|ground| ground.settled() + i)
     }
 
     /// The load that acts now: `inputs` and the record.

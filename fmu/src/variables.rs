@@ -53,7 +53,8 @@ fn rows(structure: &Structure) -> Vec<VariableRow> {
     let is_one = structure.is_one_mass();
     let of = |is_so: bool, rows: fn(&Structure) -> Vec<VariableRow>| if is_so { rows(structure) } else { Vec::new() };
     let (of_one, of_many) = (|rows| of(is_one, rows), |rows| of(!is_one, rows));
-    let outputs = Output::all(structure).into_iter().filter(|of| *of != Output::y).map(|of| output(of, structure));
+    let is_coordinate = |of: &Output| matches!(of, Output::y | Output::x | Output::x_dot | Output::s(_));
+    let outputs = Output::all(structure).into_iter().filter(|of| !is_coordinate(of)).map(|of| output(of, structure));
     let (outputs, locals_of_one): (Vec<_>, Vec<_>) =
         outputs.partition(|(variable, _)| !is_one || variable.causality == Causality::Output);
     let all = [
@@ -67,7 +68,7 @@ fn rows(structure: &Structure) -> Vec<VariableRow> {
         locals_of_one,
         locals(),
         of_one(floor_variables::state_rates),
-        event_indicators().into(),
+        event_indicators(structure).into(),
         of_one(peaks),
         validity(),
         structure.description().map_or(Vec::new(), parameters),
@@ -203,7 +204,8 @@ fn locals() -> Vec<VariableRow> {
         (phase.from(["theta_0"]), source),
         counted(
             "transitions",
-            "number of transitions so far: uplift, impact, landing (also settling), overturning, start and end of yielding of a dissipator",
+            "number of transitions so far: uplift, impact, landing (also settling), overturning, start and end of yielding of a dissipator; \
+             on ground that gives touch and release of a contact point, start and end of its yielding, slip, stick and flight",
             DataType::Integer,
             Source::Transitions,
         ),
@@ -218,23 +220,25 @@ fn locals() -> Vec<VariableRow> {
 }
 
 /// The event indicators, in their order: they tell a host that integrates that a phase ends.
-fn event_indicators() -> [VariableRow; INDICATORS] {
+fn event_indicators(structure: &Structure) -> [VariableRow; INDICATORS] {
     #[rustfmt::skip]
     const PHASE: &[&str] = &[
         "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "P_0",
-        "xi_d", "k_d", "F_y",
+        "xi_d", "k_d", "F_y", "s", "f_v",
     ];
+    const END: &[&str] = &["theta", "theta_dot", "B", "xi_d", "k_d", "F_y"];
+    let may_slide = structure.foundation().is_some_and(|ground| ground.mu_c.is_some());
+    let end = if may_slide { [END, ACCELERATION, &["x_dot"]].concat() } else { END.into() };
     let indicator = |which, name, description, of| {
         let (variable, source) = local([name, "1", description], Source::Indicator(which), of);
         (variable.indicator(), source)
     };
     let of_phase = "event indicator, positive while the phase lasts: in full contact the margin to uplift, while rocking \
-                    s theta/alpha_cg, s = 1 about the right edge, -1 about the left";
-    let of_end = "event indicator, positive until the structure overturns or a dissipator starts or stops yielding";
-    [
-        indicator(0, "phase_indicator", of_phase, PHASE),
-        indicator(1, "overturning_indicator", of_end, &["theta", "theta_dot", "B", "xi_d", "k_d", "F_y"]),
-    ]
+                    s theta/alpha_cg, s = 1 about the right edge, -1 about the left; on ground that gives until a contact point is \
+                    touched or released, or starts or stops yielding";
+    let of_end = "event indicator, positive until the structure overturns, a dissipator starts or stops yielding, or the base \
+                  starts or stops sliding";
+    [indicator(0, "phase_indicator", of_phase, PHASE), indicator(1, "overturning_indicator", of_end, &end)]
 }
 
 /// Largest magnitudes and their instants. A host may add a tendon and dissipators.

@@ -173,12 +173,16 @@ impl<Q: Coordinates> Guard<Q> for Points {
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         let (contact, foundation) = (now.motion.phase.contact(), now.level.structure().ground());
         let of = |(i, margin): (usize, f64)| if contact.is_pressed(i) { margin } else { -margin };
-        let reserve = |(i, reserve): (usize, f64)| match contact {
+        let (state, base) = (&now.motion.state, now.level.structure().base());
+        let reserve = |(i, reserve): (usize, f64)| match foundation.points[i] {
             _ if !contact.is_pressed(i) => f64::INFINITY,
+            // without a dashpot it carries its capacity as long as it goes down
+            ContactPoint { c: 0.0, xi, .. } if contact.yields(i) => {
+                foundation.y_s * state.u_dot.footing(foundation).height(xi) / (base.g * base.B).sqrt()
+            }
             _ if contact.yields(i) => -reserve,
             _ => reserve,
         };
-        let state = &now.motion.state;
         let reserves = reserves(foundation, state).enumerate().map(reserve).filter(|_| foundation.yields);
         let least = margins(foundation, state).enumerate().map(of).chain(reserves).fold(f64::INFINITY, f64::min);
         (0, least / foundation.y_s.abs() + BAND)
@@ -513,7 +517,8 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
         let margin = match (ground.mu_c, contact.friction) {
             (Some(_), Friction::Slides(side)) => side.sign() * x_dot / (base.g * base.B).sqrt(),
             (Some(mu_c), Friction::Sticks) => {
-                let N: f64 = (0..ground.points.len()).map(|i| now.output(Output::N(i))).sum();
+                let of = now.outputs();
+                let N: f64 = (0..ground.points.len()).map(|i| of(Output::N(i))).sum();
                 (mu_c * N - now.reactions().R_h.abs()) / (base.m_t * base.g)
             }
             _ => 1.0,

@@ -362,10 +362,13 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
     }
 
     /// `state` with the sine of its rotation.
-    fn admissible(&self, _phase: Phase, mut state: State<Modes>) -> State<Modes> {
+    fn admissible(&self, phase: Phase, mut state: State<Modes>) -> State<Modes> {
         let ((sin, cos), ground) = (libm::sincos(state.theta), self.subject.structure.ground());
         state.u.set_footing(ground, Footing { sin, ..state.u.footing(ground) });
         state.u_dot.set_footing(ground, Footing { sin: state.theta_dot * cos, ..state.u_dot.footing(ground) });
+        if let Phase::OnGround(contact) = phase {
+            ground.admit(contact, &mut state);
+        }
         state
     }
 

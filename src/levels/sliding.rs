@@ -19,7 +19,7 @@ use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::series::taylor::{LONGEST_SPAN, Series, ZERO, product};
 use crate::structure::ground::{ContactPoint, FOOTING, Footing, free_mass};
 use crate::structure::mode::Modes;
-use crate::{Base, Foundation, PressedPoints};
+use crate::{Base, Foundation, Friction, PressedPoints, State};
 use std::ops::Range;
 
 impl Foundation {
@@ -44,6 +44,19 @@ impl Foundation {
             let settles = if c > 0.0 { -(stiffness * e + capacity) / c - fall } else { -fall };
             rate.set(self.settled() + i, settles);
         }
+    }
+
+    /// Writes 0 for the rates of what does not move with these pressed points, the rates at which points settle, and how far points without a
+    /// dashpot have settled that carry their capacity.
+    pub(super) fn admit(&self, contact: PressedPoints, state: &mut State<Modes>) {
+        let x_dot = state.u_dot.slide(self).filter(|_| contact.friction != Friction::Sticks);
+        self.rest_beside(&mut state.u_dot);
+        self.slide().zip(x_dot).into_iter().for_each(|(place, x_dot)| state.u_dot.set(place, x_dot));
+        for (i, point) in self.points.iter().enumerate().filter(|(i, point)| contact.yields(*i) && point.c == 0.0) {
+            let settled = -point.q / point.k - state.u.footing(self).height(point.xi);
+            state.u.set(self.settled() + i, settled);
+        }
+        self.settle(contact, &state.u, &mut state.u_dot, 0);
     }
 
     /// Coefficient `n` of the power that the dashpots of the points that yield take, W.
@@ -167,6 +180,7 @@ impl<V: Abreast> OnGround<V> {
             };
             let rates_of_modes: [f64; crate::structure::mode::MOST_MODES] =
                 std::array::from_fn(|j| if j < modes.len() { along(j) * per } else { 0.0 });
+            arc.u_dot[n].set_footing(under, Footing { taken: power, ..rates });
             let (new, new_rate) = (&mut arc.u[order], &mut arc.u_dot[order]);
             (0..modes.len()).for_each(|j| new_rate.set(j, rates_of_modes[j]));
             let new_theta_dot = theta_ddot * per;

@@ -13,10 +13,11 @@
 //! motion. All else that is known of an output is its row in `outputs!`. Columns, peaks, bounds and variables follow from both.
 
 use crate::mechanics::instant::{Instant, MassPoint, uplift};
-use crate::mechanics::lateral::{Coordinates, Lateral};
+use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::shown::{Legend, Place, UNITS};
+use crate::numbers::dual::Dual;
 use crate::numbers::{Number, Ordered};
 use crate::structure::gauge::Gauge;
 use crate::structure::mode::Modes;
@@ -125,7 +126,8 @@ macro_rules! outputs {
 
 /// The variables of an FMU that accelerations follow from: the load, the motion, the level, and all parameters but r.
 pub const ACCELERATION: &[&str] = &{
-    const OTHERS: [&str; 8] = ["a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "detail"];
+    const OTHERS: [&str; 10] =
+        ["a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "detail", "s", "f_v"];
     let (mut names, mut count, mut i) = ([""; OTHERS.len() + PARAMETERS.len() - 1], OTHERS.len(), 0);
     names.split_at_mut(count).0.copy_from_slice(&OTHERS);
     while i < PARAMETERS.len() {
@@ -139,7 +141,7 @@ pub const ACCELERATION: &[&str] = &{
 };
 
 /// The variables of an FMU that forces of contact points follow from.
-const CONTACT: &[&str] = &["y", "y_dot", "theta", "theta_dot"];
+pub const CONTACT: &[&str] = &["y", "y_dot", "theta", "theta_dot", "s", "f_v"];
 
 use Place::{Feet, Floors, Histories, Numbers, OneMass, Page, PageOnGround, Scene, Storeys};
 
@@ -155,7 +157,7 @@ outputs! {
     y ["m"] "height of the middle of the base above the unloaded ground" "on ground that gives as all that follow but those of floors and ties",
         { "height of the base" "y" &[Scene] } Ground [] None, &[];
     settlement ["m"] "settlement of the lower outer contact point" "rotation included, −min(e); the middle of the base settles by −y",
-        { "settlement of the lower edge" "s" &[PageOnGround, Numbers] } Ground [] Parts, &["y", "theta"];
+        { "settlement of the lower edge" "s" &[PageOnGround, Numbers] } Ground [] Parts, &["y", "theta", "f_v"];
     contact ["1"] "stiffness of the pressed contact points over the stiffness of all", Ground [] None, &[];
     E_foundation ["J"] "energy that the ground has taken", Ground [] None, &[];
     x ["m"] "way of the middle of the base over the ground, to the right", { "way of the base" "x" &[Scene, PageOnGround, Numbers] }
@@ -163,8 +165,8 @@ outputs! {
     x_dot ["m/s"] "velocity of the middle of the base over the ground", Slide [] None, &[];
     slip_path ["m"] "sum of the slips of the base", Slide [] None, &[];
     E_friction ["J"] "energy that friction has taken", Slide [] None, &[];
-    settled ["m"] "mean settlement of the contact points for good", Yield [] None, &[];
-    tilt ["rad"] "rotation of the contact points for good", Yield [] None, &[];
+    settled ["m"] "mean settlement of the contact points for good", Yield [] None, &["s"];
+    tilt ["rad"] "rotation of the contact points for good", Yield [] None, &["s"];
     E_plastic ["J"] "energy that settling for good has taken", Yield [] None, &[];
     s(i: usize) ["m"] "settlement of contact point # for good, from the left", YieldingPoint [] None, &[];
     N_left ["N"] "force of the left outer contact point", { "force of the left edge" "N_left" &[PageOnGround, Numbers] }
@@ -180,9 +182,9 @@ outputs! {
     drift(i: usize) ["m"] "drift of storey #" "u_i − u_{i−1}", { "drift" "drift" &[Storeys] } Floor [] Component, &["u"];
     drift_ratio(i: usize) ["1"] "drift of storey # over its height", Floor [] Component, &["u"];
     delta_t(i: usize) ["m"] "lateral displacement of floor # relative to the ground (Eq 26)" "sB (1 − cos θ) + u_i cos θ + h_i sin θ",
-        { "displacement" "δ_t" &[OneMass, Numbers] } Floor [8, 2] Linear, &["u", "theta", "H", "B"];
+        { "displacement" "δ_t" &[OneMass, Numbers] } Floor [8, 2] Linear, &["u", "theta", "H", "B", "x"];
     v_t(i: usize) ["m/s"] "lateral velocity of floor # relative to the ground" "u̇_i cos θ + [(sB − u_i) sin θ + h_i cos θ] θ̇",
-        Floor [9] None, &["u", "u_dot", "theta", "theta_dot", "H", "B"];
+        Floor [9] None, &["u", "u_dot", "theta", "theta_dot", "H", "B", "x_dot"];
     a_t(i: usize) ["m/s2"] "lateral acceleration of floor #, ground included (Eq 27)" "along the turning e_x",
         { "acceleration" "a_t" &[Histories, OneMass, Page, Numbers, Floors] } Floor [2, 4] Linear, ACCELERATION;
     V(i: usize) ["N"] "shear of storey # if all F_t are 0: the sum of m a_t above it", { "storey shear" "V" &[Storeys] }
@@ -465,6 +467,19 @@ impl Output {
             E_plastic => Some(settling),
             _ => None,
         }
+    }
+
+    /// The rate in the motion `x` of an output that adds up: |ẋ| and μ_c N |ẋ| while the base slides, and Σ q ṡ.
+    pub(crate) fn added_up_rate<Q: Coordinates>(self, x: &Instant<Dual<f64>, Duals<Q>>) -> Option<f64> {
+        self.added_up(&Dissipators::NEW)?;
+        let Some(ground) = <Q as Lateral<f64>>::foundation(x.structure) else { return Some(0.0) };
+        let (points, mu_c) = (0..ground.points.len(), ground.mu_c.unwrap_or(0.0));
+        let slip = x.contact.friction.sign() * x.u_dot.slide(ground).map_or(0.0, |rate| rate.value);
+        Some(match self {
+            slip_path => slip,
+            E_friction => slip * mu_c * points.map(|i| N(i).on_ground(x, ground).value).sum::<f64>(),
+            _ => points.map(|i| ground.points[i].q * x.u_dot.settlement(ground, i).value).sum(),
+        })
     }
 
     /// The output in the motion `x` on ground that gives (F1, F2).

@@ -17,7 +17,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
 use crate::structure::ground::Footing;
-use crate::{Engine, GroundMotion, Motion, Phase, State};
+use crate::{Engine, Friction, GroundMotion, Motion, Phase, PressedPoints, Side, State};
 use serde::{Deserialize, Serialize};
 
 /// How many event indicators there are.
@@ -89,12 +89,16 @@ impl<Q: Coordinates> Checkpoint<Q> {
         let has_changed = own.transitions != self.motion.transitions;
         let is_corrected = has_changed || is_beyond;
         let time = if own.phase.properties().is_over { own.time } else { end.time };
-        let mut state = if is_corrected { own.state } else { end.state };
+        let (phase, mut state) = if is_corrected { (own.phase, own.state) } else { (end.phase, end.state) };
         if let Some(ground) = Q::foundation(engine.structure()) {
             let taken = own.state.u.footing(ground).taken; // the host does not integrate what the ground takes
             state.u.set_footing(ground, Footing { taken, ..state.u.footing(ground) });
         }
-        Ok(Checked { motion: Motion { time, state, ..own }, is_corrected, was_hidden: has_changed && !is_beyond })
+        Ok(Checked {
+            motion: Motion { time, phase, state, ..own },
+            is_corrected,
+            was_hidden: has_changed && !is_beyond,
+        })
     }
 
     /// The engine's own motion from here over `interval` (s).
@@ -128,7 +132,7 @@ impl<Q: Coordinates> Checkpoint<Q> {
 
 impl<Q: Coordinates> Engine<Q> {
     /// Event indicators: continuous, of order one, positive while the phase lasts under `load`. The first is for uplift in full contact and
-    /// for impact while rocking. The second is for overturning and for dissipators that begin or cease to yield.
+    /// for impact while rocking. The second is for overturning, for dissipators that begin or cease to yield, and for friction.
     pub fn event_indicators(&self, load: Load<Q>) -> [f64; INDICATORS] {
         let now = self.sample(load);
         let mut indicators = [f64::INFINITY; INDICATORS];
@@ -141,11 +145,20 @@ impl<Q: Coordinates> Engine<Q> {
         indicators.map(|value| if value == f64::INFINITY { 1.0 } else { value })
     }
 
-    /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
+    /// Takes `state` from another integrator; what does not move in the present phase stays at rest. A base that sticks slides if it has a
+    /// velocity, beyond what rounding leaves.
     pub fn set_state(&mut self, state: State<Q>) {
         let Sample { motion, level, .. } = self.sample(Load::NONE);
-        let state = level.admissible(motion.phase, state);
-        self.set_motion(Motion { state, ..motion });
+        let (mut phase, structure) = (motion.phase, level.structure());
+        let x_dot = Q::foundation(structure).and_then(|ground| state.u_dot.slide(ground)).unwrap_or(0.0);
+        let least = BAND * (structure.base().g * structure.base().B).sqrt();
+        if let (Phase::OnGround(contact @ PressedPoints { friction: Friction::Sticks, .. }), true) =
+            (&mut phase, x_dot.abs() > least)
+        {
+            contact.friction = Friction::Slides(Side::of(x_dot));
+        }
+        let state = level.admissible(phase, state);
+        self.set_motion(Motion { state, phase, ..motion });
     }
 
     /// Applies what is due at once under `load`: after a landing, at the start, or when a load jumps.

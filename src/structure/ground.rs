@@ -359,12 +359,12 @@ impl Foundation {
     }
 
     /// The place of x, the way of the middle to the right, among the lateral coordinates of a base that may slide.
-    pub(crate) fn slide(&self) -> Option<usize> {
+    pub fn slide(&self) -> Option<usize> {
         self.mu_c.map(|_| self.place + FOOTING)
     }
 
     /// The place of the settlement of the first point.
-    pub(crate) fn settled(&self) -> usize {
+    pub fn settled(&self) -> usize {
         self.place + FOOTING + usize::from(self.mu_c.is_some())
     }
 

@@ -29,7 +29,10 @@ pub fn nominal(variable: &Variable, source: Source, structure: &Structure) -> Op
     let (&Base { m_t, g, p_l, tan_alpha_cg, .. }, &Body { m_s, S_1, .. }) = (structure.base(), structure.body());
     let (usual, a_g) = (structure.usual::<Modes>(), g * tan_alpha_cg);
     let (name, number) = symbol_and_number(&variable.name);
+    let settled = structure.foundation().map_or(f64::NAN, |ground| ground.y_s.abs());
     let magnitude = match source {
+        _ if matches!(&*name, "y" | "x" | "x_max" | "s" | "settled") => settled,
+        _ if matches!(&*name, "y_dot" | "x_dot" | "der(y)" | "der(x)") => (g * settled).sqrt(),
         Source::Output(of) | Source::Peak(of) => of.usual(structure)?,
         Source::InitialValue(which, floor) => {
             [Output::theta, Output::theta_dot, Output::u(floor), Output::u_dot(floor)][which].usual(structure)?
