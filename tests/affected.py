@@ -9,7 +9,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 FMU, PYTHON, BROWSER = ([f"tests/{file}.py" for file in files.split()] for files in (
     "test_archive test_derivatives test_floating_point test_fmi3 test_inputs test_integrator test_record_inside test_refusals test_states",
-    "heavy/python/test_python heavy/python/test_many_masses heavy/python/test_calibrate", "heavy/browser/test_view heavy/browser/test_explore"))
+    "heavy/python/test_python heavy/python/test_many_masses heavy/python/test_calibrate heavy/python/test_design",
+    "heavy/browser/test_view heavy/browser/test_explore"))
 #: The tests in Python of a folder.
 TESTS = {"fmu": FMU, "modelDescription": FMU, "python": PYTHON, "view": BROWSER, "web": BROWSER[1:]}
 

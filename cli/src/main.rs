@@ -146,6 +146,27 @@ A file of pulses, spectrum.toml, a map of each structure:
   name = 'pier'
   parameters = { m = 1000, m0 = 300, H = 4, B = 0.6, f_fc = 3, zeta_fc = 0.02, r = 0.95 }")]
     Sweep(sweep::SweepArgs),
+    /// Find the value of a number at which limits hold in a share of the runs: the least prestress, the largest height
+    ///
+    /// Runs the structure with values of one number under every record, refines where the limits begin or cease to hold,
+    /// and prints the value and the curve over the range. If they begin or cease more than once, all crossings are given.
+    #[command(after_help = "Examples:
+  rocking-fmu design tendon.toml
+  rocking-fmu design tendon.toml -o curve.csv --picture curve.svg
+
+The file, tendon.toml:
+  records = ['records/*.AT2']             # records, unit, scale, duration, ... as in a file of `sweep`
+  [design]
+  vary = 'P_0'                            # any number, such as f_v of ground, k[1] of a storey, slenderness
+  between = [0, 2e7]
+  limit = ['theta <= 0.5 %', 'a_t <= 0.4 g']  # all must hold; 'stands': it does not overturn
+  share = 0.84                            # of the runs
+  count = 25                              # values of the first pass; log = true spaces them evenly in their logarithms
+  refine = 3                              # times that the step is divided by 8 at each crossing
+  [[structures]]
+  name = 'pier'
+  file = 'pier.toml'")]
+    Design(sweep::design::DesignArgs),
     /// Write a pulse as a record: half sine, sine, cosine, Ricker, Mavroeidis and Papageorgiou
     ///
     /// The standard pulses as their papers define them. Straight lines replace the curve within --error, each with the
@@ -196,6 +217,7 @@ fn main() -> ExitCode {
         Command::Estimate(args) => estimate::run(&args),
         Command::Pushover(args) => pushover::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Design(args) => sweep::design::run(&args),
         Command::Pulse(args) => pulse::run(&args),
         Command::Record(args) => record::run(&args),
         Command::Completions { shell } => completions(shell),

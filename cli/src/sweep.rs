@@ -1,6 +1,7 @@
 //! `sweep`: records × scale factors × structures, a row of CSV for every run; probabilities of overturning and of
 //! exceeding limits, and fragility curves. Of pulses, overturning spectra.
 
+pub mod design;
 mod file;
 mod map;
 mod picture;
@@ -66,6 +67,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
             ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
             map::run(sweep, args.results, &pool, &output, picture)
         }
+        SweepContent::Design(..) => bail!("[design] is for `rocking-fmu design`"),
     }
 }
 

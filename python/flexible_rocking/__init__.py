@@ -10,9 +10,9 @@
 
 A Structure is shaken by a Record, which is a ground motion; simulate returns a Run. advise recommends a level of detail. estimate
 gives the demands that need no time history. sweep does many runs on all cores, fragility fits a curve to them, and
-intensity_at finds how strong each record must be to reach a limit. calibrate finds the numbers that fit measured histories. export writes
-an FMU; fmu is the path of one. help() of each has units, shapes, equation numbers of the paper, and errors. docs/howto/python.md is
-the page of the module.
+intensity_at finds how strong each record must be to reach a limit. design finds the value of a number at which limits hold in a
+share of the runs, calibrate the numbers that fit measured histories. export writes an FMU; fmu is the path of one. help() of each
+has units, shapes, equation numbers of the paper, and errors. docs/howto/python.md is the page of the module.
 
 SI units and radians throughout. Invalid input raises ValueError with the name, the value and the limit, a missing file
 FileNotFoundError. A path stands for the Record of its file. Structure.read and write share files with the command line. Tables need pandas,
@@ -26,14 +26,15 @@ from pathlib import Path as _Path
 
 from . import _native
 from ._calibrate import Calibration, calibrate
+from ._design import Design, design
 from ._ground import Ground
 from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
 from ._results import Advice, Estimate, Peak, Profile, Response, Transition, Transitions, Worst
 from ._sweep import Fragility, fragility, intensity_at, overturning_map, sweep
 
-__all__ = ["Advice", "Calibration", "Curve", "Estimate", "Fragility", "Ground", "Peak", "Profile", "Record", "Response", "Run", "Structure",
-           "Transition", "Transitions", "Worst", "__version__", "advise", "calibrate", "estimate", "export", "fmu", "fragility", "intensity_at",
-           "overturning_map", "pulse", "simulate", "sweep"]
+__all__ = ["Advice", "Calibration", "Curve", "Design", "Estimate", "Fragility", "Ground", "Peak", "Profile", "Record", "Response", "Run",
+           "Structure", "Transition", "Transitions", "Worst", "__version__", "advise", "calibrate", "design", "estimate", "export", "fmu",
+           "fragility", "intensity_at", "overturning_map", "pulse", "simulate", "sweep"]
 
 
 def fmu() -> _Path:

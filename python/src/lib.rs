@@ -35,7 +35,7 @@ mod _native {
     #[pymodule_export]
     use super::structure::{PyStructure, numbers_of, varied};
     #[pymodule_export]
-    use super::sweep::{PyCurve, columns_of, exceeds, fragility, heading_of, overturning_map, sweep};
+    use super::sweep::{PyCurve, columns_of, design, exceeds, fragility, heading_of, overturning_map, sweep};
     #[pymodule_export]
     use super::tables::check_ground;
 

@@ -19,6 +19,7 @@ use rocking::structure::parameters::PRESETS;
 use rocking::{OneMass, Side, State};
 use rocking_report::structure_file::{self, OF_MANY, of_table};
 use rocking_report::{describe, input};
+use rocking_sweep::plan::Population;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use toml::Table;
@@ -66,13 +67,12 @@ pub fn numbers_of(structure: &PyStructure) -> Vec<(String, &'static str, f64, f6
     all.into_iter().map(|of| (of.name, of.unit, of.value, of.min, of.max)).collect()
 }
 
-/// `structure` with these values of its [`numbers_of`], without warnings.
+/// `structure` with these values of its [`numbers_of`], or of its slenderness, without warnings.
 #[pyfunction]
 pub fn varied(structure: &PyStructure, values: HashMap<String, f64>) -> PyResult<PyStructure> {
-    let Some(of) = structure.of.description() else { return Ok(PyStructure { of: structure.of.clone() }) };
-    let numbers = of.numbers().into_iter().map(|of| values.get(&of.name).copied().unwrap_or(of.value));
-    let varied = of.with(&Vec::from_iter(numbers)).structure().map_err(refused)?;
-    Ok(PyStructure { of: varied.measured_in(structure.of.units()) })
+    let vary = |population: Population, (name, value): (String, f64)| population.vary(&name, vec![value]);
+    let varied = values.into_iter().try_fold(Population::new("varied", structure.of.clone()), vary);
+    Ok(PyStructure { of: varied.and_then(|of| of.structure(0)).map_err(refused)? })
 }
 
 impl PartialEq for PyStructure {

@@ -13,6 +13,7 @@ use pyo3::types::{PyDict, PyList, PyString};
 use rocking::Detail;
 use rocking::run::Ending;
 use rocking_report::run::Watcher;
+use rocking_sweep::design::{Design, Designed, Sought};
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
 use rocking_sweep::map::{Axis, GridPlace, HEADINGS, MAX_REFINEMENTS, Map, MapPoint};
@@ -61,18 +62,7 @@ pub fn sweep<'py>(
         Population::of(name, of.iter().map(|structure| structure.get().of.clone()).collect()).map_err(refused)
     };
     let populations = structures.iter().map(population).collect::<PyResult<_>>()?;
-    let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().of.base().g);
-    let g = gs.next().unwrap_or(G);
-    let other = gs.find(|other| *other != g);
-    let motion = |(name, RecordArgument(record)): &(String, RecordArgument)| {
-        let record = record.get();
-        if let (true, Some(other)) = (record.is_in_g(), other) {
-            let needed = "a sweep has one g, in which its records are given";
-            return Err(PyValueError::new_err(format!("g = {other} m/s2 and g = {g} m/s2: {needed}")));
-        }
-        NamedRecord::new(name, record.unscaled(g).map_err(refused)?, record.scale).map_err(refused)
-    };
-    let motions = records.iter().map(motion).collect::<PyResult<_>>()?;
+    let motions = motions(&records, structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get()))?;
     let conditions = conditions(detail, tolerance, duration, Some(initial))?;
     let plan = py.detach(|| Plan::new(populations, motions, scales, conditions)).map_err(refused)?;
 
@@ -119,6 +109,72 @@ pub fn sweep<'py>(
     let columns = columns.into_iter().map(|(heading, column)| Ok((heading, values(py, column)?)));
     let keys = keys.iter().map(|key| PyString::new(py, key.hyphenated().encode_lower(&mut [0; 36])));
     Ok((PyList::new(py, keys)?, columns.collect::<PyResult<_>>()?, stopped))
+}
+
+/// The `records` under their names, in the one g of the `structures`.
+fn motions<'a>(
+    records: &[(String, RecordArgument)],
+    structures: impl Iterator<Item = &'a PyStructure>,
+) -> PyResult<Vec<NamedRecord>> {
+    let mut gs = structures.map(|structure| structure.of.base().g);
+    let g = gs.next().unwrap_or(G);
+    let other = gs.find(|other| *other != g);
+    let motion = |(name, RecordArgument(record)): &(String, RecordArgument)| {
+        let record = record.get();
+        if let (true, Some(other)) = (record.is_in_g(), other) {
+            let needed = "a sweep has one g, in which its records are given";
+            return Err(PyValueError::new_err(format!("g = {other} m/s2 and g = {g} m/s2: {needed}")));
+        }
+        NamedRecord::new(name, record.unscaled(g).map_err(refused)?, record.scale).map_err(refused)
+    };
+    records.iter().map(motion).collect()
+}
+
+/// What [`Design::found`] says, the unit of the number, and the curve: value, whether the limits hold, part of the runs within them,
+/// how many are unknown, and the demand of each limit.
+type FoundDesign =
+    (Option<f64>, Vec<[f64; 2]>, Vec<[f64; 2]>, String, &'static str, Vec<(f64, bool, f64, usize, Vec<f64>)>);
+
+/// The value of the number `vary` of `structure` at which limits hold in a share of the runs, and the curve over its range.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn design(
+    py: Python<'_>,
+    structure: &PyStructure,
+    records: Vec<(String, RecordArgument)>,
+    vary: String,
+    between: [f64; 2],
+    limit: Vec<String>,
+    share: f64,
+    count: usize,
+    log: bool,
+    refine: u32,
+    scale: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = argument::detail)] detail: Detail,
+    #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
+    duration: Option<&Bound<'_, PyAny>>,
+    initial: &Bound<'_, PyDict>,
+    threads: i64,
+) -> PyResult<FoundDesign> {
+    let design = Design {
+        sought: Sought { vary, between, limit, share, count, log, refine },
+        structure: structure.of.clone(),
+        motions: motions(&records, [structure].into_iter())?,
+        scales: numbers("scale", scale)?,
+        conditions: conditions(detail, tolerance, duration, Some(initial))?,
+    };
+    let (points, found, unit) = interruptible(py, move |abandoned| -> anyhow::Result<_> {
+        let waiting = abandoned.clone();
+        let goes_on = |_, _| {
+            waiting.check();
+            true
+        };
+        let points = thread_pool(threads)?.install(|| design.complete(goes_on))?;
+        Ok((points.clone(), design.found(&points), design.unit()))
+    })?;
+    let Designed { value, holds, crossings, sentence } = found;
+    let rows = points.into_iter().map(|of| (of.value, of.holds, of.within, of.unknown, of.demands));
+    Ok((value, holds, crossings, sentence, unit, rows.collect()))
 }
 
 /// A map of `structure` under pulses as CSV: a row for each point, those of the grid first.

@@ -154,6 +154,21 @@ impl Outcome {
         let peak = limit.measures().iter().fold(f64::NAN, |most, measure| most.max(peaks[*measure]));
         limit.is_exceeded(*ending, peak, g)
     }
+
+    /// The largest peak as a fraction of `limit` under `g` (m/s²), 0 within a limit of overturning; infinite beyond that, and where
+    /// [`Outcome::exceeds`] does not know.
+    pub fn demand(&self, limit: &Limit, g: f64) -> f64 {
+        match (self, limit, self.exceeds(limit, g)) {
+            (Outcome::Ended(Summary { ending, peaks, .. }), Limit::Peak { value, unit, .. }, Some(_))
+                if *ending != Ending::Overturned =>
+            {
+                let peak = limit.measures().iter().fold(f64::NAN, |most, measure| most.max(peaks[*measure]));
+                peak / in_own_unit(*value, unit, g)
+            }
+            (_, Limit::Overturning, Some(false)) => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
 }
 
 /// A `value` in a usual `unit`, or in the own unit of a measure, in that own unit; `g` in m/s².

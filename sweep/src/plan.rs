@@ -245,7 +245,8 @@ impl Population {
         })
     }
 
-    fn structure(&self, member: usize) -> Result<Structure, Refused> {
+    /// The structure of this number, from 0.
+    pub fn structure(&self, member: usize) -> Result<Structure, Refused> {
         let base = &self.bases[member / (self.len() / self.bases.len())];
         if self.varying.is_empty() {
             return Ok(base.clone());

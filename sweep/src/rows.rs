@@ -301,7 +301,7 @@ fn digest_of(record: &Record) -> Uuid {
 }
 
 /// Refuses two ground motions that are the same: each of their runs would count twice.
-fn check_records(motions: &[NamedRecord]) -> anyhow::Result<()> {
+pub(crate) fn check_records(motions: &[NamedRecord]) -> anyhow::Result<()> {
     for (i, motion) in motions.iter().enumerate() {
         if let Some(NamedRecord { name, .. }) = motions[..i].iter().find(|first| first.is_same(motion)) {
             let second = &motion.name;

@@ -10,6 +10,7 @@ use rocking::structure::natural_quantities::Numbers;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_report::{input, output_files::OutputFiles, structure_file};
+use rocking_sweep::design::{Design, Sought};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population, measure};
@@ -36,6 +37,8 @@ pub enum SweepContent {
     /// Records on structures.
     Records(Box<RecordSweep>),
     Pulses(MapSweep),
+    /// A value of a number that is sought, and a line for each record.
+    Design(Box<Design>, Vec<String>),
 }
 
 /// The file with `records`.
@@ -46,7 +49,8 @@ struct SweepFile {
     /// Unit of records that do not state theirs.
     unit: Option<Unit>,
     time_scale: Option<f64>,
-    scale: Values,
+    /// Without it, 1.
+    scale: Option<Values>,
     structures: Vec<StructureGrid>,
     #[serde(default)]
     detail: Detail,
@@ -59,6 +63,7 @@ struct SweepFile {
     /// One or several by the name of a measure, in its own unit or with a usual one.
     #[serde(default)]
     limits: toml::Table,
+    design: Option<Sought>,
 }
 
 /// The file with `pulses`.
@@ -152,11 +157,11 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<SweepContent
         }
         let file: SweepFile = toml::from_str(&text)?;
         let (unit, time_scale) = (file.unit, file.time_scale);
-        let scales = file.scale.list().context("scale")?;
+        let scales = file.scale.as_ref().map_or(Ok(vec![1.0]), Values::list).context("scale")?;
         let measure = file.intensity.as_deref().map_or(Ok(IntensityMeasure::default()), measure)?;
         let (grids, mut bases) = (&file.structures, Vec::new());
         grids.iter().try_for_each(|grid| grid.base(folder, files).map(|base| bases.push(base)))?;
-        let g = gravity(&bases)?;
+        let (g, base) = (gravity(&bases)?, bases[0].clone());
         let populations =
             grids.iter().zip(bases).map(|(grid, base)| grid.population(base)).collect::<Result<_, _>>()?;
         let (mut records, mut warnings) = (Vec::new(), Vec::new());
@@ -186,6 +191,12 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<SweepContent
         all_warn(warnings);
         let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
         let conditions = Conditions { initial: file.initial.state(), detail: file.detail, tolerance, duration };
+        if let Some(sought) = file.design {
+            let is_alone = grids.len() == 1 && grids[0].vary.is_empty() && file.limits.is_empty();
+            ensure!(is_alone, "design needs one of [[structures]], without vary and limits: they stand in [design]");
+            let design = Design { sought, structure: base, motions: motions?, scales, conditions };
+            return Ok(SweepContent::Design(Box::new(design), records));
+        }
         let plan = Plan::new(populations, motions?, scales, conditions)?;
         all_warn(plan.doubts.clone());
         let limits = limits(&file.limits, &plan.measures).context("limits")?;
