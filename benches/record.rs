@@ -4,11 +4,12 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::estimates::response_spectrum::{FloorContents, floor_spectra};
 use rocking::run::End;
 use rocking::run::record::Record;
 use rocking::{Detail, Motion, OneMass, Parameters, Run};
 use rocking_records::Reading;
-use std::{env, hint::black_box, path::Path};
+use std::{array, env, hint::black_box, path::Path, time::Instant};
 
 /// Length of the scene, s.
 const DURATION: f64 = 15.0;
@@ -59,5 +60,26 @@ fn peaks(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, levels, peaks);
+/// The spectrum of the floor at 100 periods from 0.02 to 4 s, which may take fifteen times as long as the run with its peaks.
+fn spectrum(criterion: &mut Criterion) {
+    let ground = record();
+    let mut group = criterion.benchmark_group("spectrum");
+    let run = run(&ground, Detail::Auto, DEFAULT_TOLERANCE);
+    let contents: [_; 100] =
+        array::from_fn(|i| FloorContents { floor: 0, T: 0.02 * f64::powf(200.0, i as f64 / 99.0), zeta: 0.05 });
+    let spectrum = || floor_spectra(black_box(&run), DURATION, &contents, &mut ()).unwrap();
+    let fastest = |work: &dyn Fn()| {
+        let time = |_| {
+            let start = Instant::now();
+            work();
+            start.elapsed().as_secs_f64()
+        };
+        (0..20).map(time).fold(f64::INFINITY, f64::min)
+    };
+    let ratio = fastest(&|| drop(black_box(spectrum()))) / fastest(&|| drop(black_box(run.peaks().unwrap())));
+    println!("the spectrum takes {ratio:.1} times as long as the run with its peaks");
+    group.bench_function("100 periods", |bencher| bencher.iter(spectrum));
+}
+
+criterion_group!(benches, levels, peaks, spectrum);
 criterion_main!(benches);

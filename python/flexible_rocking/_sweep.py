@@ -27,6 +27,7 @@ def sweep(
     *,
     scale: "float | ArrayLike" = 1.0,
     intensity: str = "PGA",
+    contents: "Sequence[str]" = (),
     detail: str = "auto",
     tolerance: float = 1e-9,
     duration: float | None = None,
@@ -47,6 +48,9 @@ def sweep(
     periods, evenly spaced from 0.2/f_fc to 3/f_fc. "S_a(1 s)" is S_a at this period with 5 % damping, whatever the structure has, and
     "S_a(1 s, 2 %)" with another. The table has S_a_avg and S_a at a period only if that is the measure, and always the others.
 
+    contents: oscillators on floors, by the names of their columns: "S_a[3](0.5 s)" has this period and 5 % damping on the third floor,
+    "S_a[3](0.5 s, 2 %)" another; one mass is floor 1. The table then has "peak_S_a[3](0.5 s)[m/s2]", which `fragility` takes as a limit.
+
     progress: True shows the runs, their rate and the time left by tqdm. A function is called with the numbers of runs done and
     to do, 20 times per second.
 
@@ -64,7 +68,7 @@ def sweep(
     groups = structures if isinstance(structures, Mapping) else {"structures": structures}
     populations = [(name, [of] if isinstance(of, _native.Structure) else list(of)) for name, of in groups.items()]
     with _told(progress) as tell:
-        keys, columns, stopped = _native.sweep(populations, _named(records), scale, intensity, path, detail, tolerance, duration,
+        keys, columns, stopped = _native.sweep(populations, _named(records), scale, intensity, list(contents), path, detail, tolerance, duration,
                                                initial, validity, threads, tell)
     table = pandas.DataFrame({"run": keys} | {name: _values(of) for name, of in columns}, copy=False)
     table.attrs["intensity"] = _native.heading_of(intensity)

@@ -387,7 +387,7 @@ impl PyRecord {
         let is_one = number("periods", periods).is_ok();
         let (record, periods) = (Arc::clone(&self.usual), numbers("periods", periods)?);
         let spectrum = interruptible(py, move |abandoned| {
-            response_spectrum::spectrum(&record, periods.into_iter().inspect(|_| abandoned.check()), zeta)
+            response_spectrum::spectrum(&record, periods.into_iter().inspect(|_| abandoned.check()).map(|T| (T, zeta)))
         })?;
         Ok(if is_one { spectrum[0].into_pyobject(py)?.into_any() } else { PyArray1::from_vec(py, spectrum).into_any() })
     }

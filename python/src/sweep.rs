@@ -47,6 +47,7 @@ pub fn sweep<'py>(
     records: Vec<(String, RecordArgument)>,
     scale: &Bound<'_, PyAny>,
     intensity: &str,
+    contents: Vec<String>,
     path: Option<PathBuf>,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
@@ -64,7 +65,8 @@ pub fn sweep<'py>(
     let populations = structures.iter().map(population).collect::<PyResult<_>>()?;
     let motions = motions(&records, structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get()))?;
     let conditions = conditions(detail, tolerance, duration, Some(initial))?;
-    let plan = py.detach(|| Plan::new(populations, motions, scales, conditions)).map_err(refused)?;
+    let plan = py.detach(|| Plan::new(populations, motions, scales, conditions)?.with_contents(&contents));
+    let plan = plan.map_err(refused)?;
 
     let (program, done, stopped) = (Program::of(BUILD), AtomicUsize::new(0), AtomicBool::new(false));
     let sweep = py.detach(|| Sweep::open(&plan, validity, &program, path.as_deref())).map_err(refused)?;

@@ -4,7 +4,7 @@ use crate::quantities::NamedValue;
 use crate::tables::{AFTER, Line, line};
 use anyhow::ensure;
 use rocking::engine::motion::Work;
-use rocking::estimates::response_spectrum::floor_spectrum;
+use rocking::estimates::response_spectrum::{FloorContents, floor_spectra};
 use rocking::mechanics::restraint::Dissipators;
 use rocking::run::curve;
 use rocking::run::peaks::{Peak, Peaks};
@@ -212,20 +212,21 @@ impl RunSetup {
         Ok(SampledMotion { columns, phases, transitions })
     }
 
-    /// The spectrum of the acceleration of a `floor`, from 0 on, until the end of the run or the start of the fall.
-    pub fn spectrum(
+    /// The spectra of the accelerations of `floors`, from 0 on, until the end of the run or the start of the fall.
+    pub fn spectra(
         &self,
         found: &RunReport,
-        floor: usize,
+        floors: &[usize],
         periods: &[f64],
         zeta: f64,
         watch: &mut impl Watcher,
-    ) -> anyhow::Result<Vec<f64>> {
+    ) -> anyhow::Result<Vec<Vec<f64>>> {
         let end = found.fall.unwrap_or(found.end);
         ensure!(end > found.start, "the structure falls from its start on: its floors have no spectrum");
-        with_run!(self.conditions, self.structure, &self.ground, run => {
-            Ok(floor_spectrum(&run, end, |sample| sample.output(Output::a_t(floor)), periods, zeta, watch)?)
-        })?
+        let all = floors.iter().flat_map(|&floor| periods.iter().map(move |&T| FloorContents { floor, T, zeta }));
+        let contents = Vec::from_iter(all);
+        let found = with_run!(self.conditions, self.structure, &self.ground, run => floor_spectra(&run, end, &contents, watch))?;
+        Ok(found?.chunks(periods.len().max(1)).map(<[f64]>::to_vec).collect())
     }
 
     /// The run as points between which θ, u and a_t of each floor leave straight lines by at most `part` of their peaks.

@@ -3,7 +3,7 @@
 //! f_fc and ζ_fc are those of the lowest mode of many masses. All are exact for a record that is linear between its samples.
 
 use crate::digits::short;
-use crate::estimates::response_spectrum::{PERIOD, ZETA, spectral_acceleration};
+use crate::estimates::response_spectrum::{LANES, PERIOD, ZETA, of_record};
 use crate::run::record::Record;
 use crate::series::bisection::last_where;
 use std::borrow::Cow;
@@ -127,9 +127,9 @@ pub fn cumulative_absolute_velocity(record: &Record) -> f64 {
 /// S_a at ten periods, evenly spaced from 0.2 T to 3 T.
 pub fn average_spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
     const PERIODS: u32 = 10;
-    let period = |i| T * (0.2 + 2.8 * f64::from(i) / f64::from(PERIODS - 1));
-    let logarithms = (0..PERIODS).map(|i| libm::log(spectral_acceleration(record, period(i), zeta)));
-    libm::exp(logarithms.sum::<f64>() / f64::from(PERIODS))
+    let period = |i: u32| T * (0.2 + 2.8 * f64::from(i) / f64::from(PERIODS - 1));
+    let spectrum = of_record::<LANES>(record, &Vec::from_iter((0..PERIODS).map(|i| (period(i), zeta))));
+    libm::exp(spectrum.into_iter().map(libm::log).sum::<f64>() / f64::from(PERIODS))
 }
 
 /// The instants at which 5 % and 95 % of the Arias intensity of `record` are reached, s. The significant duration D_5–95 is between
@@ -164,6 +164,7 @@ fn square_of(duration: f64, first: f64, last: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimates::response_spectrum::spectral_acceleration;
     use approx::assert_relative_eq;
 
     fn peak(times: &[f64], acceleration: &[f64]) -> f64 {

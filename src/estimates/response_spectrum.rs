@@ -1,160 +1,299 @@
-//! Response spectrum of a ground motion: S_a(T, ζ), the largest absolute acceleration of an oscillator on it.
+//! Response spectrum of an acceleration: S_a(T, ζ), the largest absolute acceleration of an oscillator under it.
 //!
 //! ```text
-//! ü + 2 ζ ω u̇ + ω² u = −a_g,        S_a = max |ü + a_g| = max |2 ζ ω u̇ + ω² u|,        ω = 2π/T
+//! ü + 2 ζ ω u̇ + ω² u = −a,        S_a = max |ü + a| = max |2 ζ ω u̇ + ω² u|,        ω = 2π/T
 //! ```
 //!
 //! S_a is the absolute acceleration, not the pseudo-acceleration ω² max|u|. Eqs 2 and 20 contain ü + a_g, which includes the force
 //! of the damper, and S_a bounds it in Eqs 4 and 22. Both accelerations are close at small damping, but
 //! ζ_u = ζ_fc c_ratio/√(1−χ) of a slender structure need not be small.
 //!
-//! The ground acceleration is a + b τ between two samples. The motion that follows the ground without swinging has
-//! ü + a_g = a + b τ and u̇ = −b/ω². The rest of (u̇, ü + a_g) is free vibration (w, ẇ), exact for any step and damping
-//! (`levels::oscillator`). The peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The
-//! zeros of the slope of this rate have a closed form, and between two of them the rate passes 0 at most once.
+//! The acceleration is a polynomial Σ a_k σᵏ over each stretch of time h: of degree 1 between two samples of a record, and on a floor as
+//! the engine expands the motion. The motion of the oscillator u = h² Σ y_k σᵏ and its absolute acceleration Σ A_k σᵏ follow:
+//!
+//! ```text
+//! A_k = W² y_k + 2 ζ W (k+1) y_{k+1},        (k+1) (k+2) y_{k+2} = −(a_k + A_k),        W = ω h
+//! ```
+//!
+//! Nothing is sampled: a bound of Σ A_k σᵏ tells most of the time that no peak is within the stretch, and otherwise its extremes are found.
 
-use crate::engine::piece::Watch;
-use crate::engine::sample::Sample;
-use crate::levels::oscillator::Oscillator;
+use crate::Output;
+use crate::engine::piece::{Piece, Watch};
+use crate::mechanics::arc::stretch;
+use crate::mechanics::lateral::Coordinates;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
 use crate::run::{End, Run, RunError, Runs};
-use crate::series::bisection::last_where;
+use crate::series::extremes::{self, OFF_CHORD};
+use crate::series::taylor::{Series, ZERO, series};
 use crate::structure::quantity::{Quantity, Refused};
-use nalgebra::{Matrix2, Vector2};
+use std::array;
 use std::f64::consts::{PI, TAU};
 
 /// Ranges of an oscillator: those of a structure's f_fc and zeta_fc.
 pub(crate) const PERIOD: Quantity<f64> = Quantity::limit("period", "s", [1e-4, 1e3], "period of an oscillator");
 pub(crate) const ZETA: Quantity<f64> = Quantity::limit("zeta", "1", [0.0, 10.0], "damping ratio of an oscillator");
 
-/// The largest change of a value of a floor spectrum, as a fraction of the value, when the step is halved for the last time.
-const SAME: f64 = 1e-3;
+/// The most oscillators that move side by side.
+pub(crate) const LANES: usize = 16;
 
-/// The most samples of a floor spectrum.
-const MOST_SAMPLES: usize = 1 << 22;
+/// The longest stretch of time in one series, as ω h max(1, 2ζ). Longer ones are divided.
+const LONGEST: f64 = 2.1;
 
-/// The spectrum of an `acceleration` on the structure of `run`, from the start of the run until `end` (s), as [`spectrum`] of a record.
-///
-/// The acceleration is sampled and linear between samples. The step is at first the mean step of the ground motion. It is halved until
-/// no S_a changes by more than 1e-3 of itself, which estimates the error and does not bound it.
-pub fn floor_spectrum<Q: Runs>(
+/// Stretches up to these lengths need terms up to these orders: those beyond are below 1e-17 of the motion.
+const ORDERS: [(f64, usize); 7] = [(0.028, 7), (0.09, 9), (0.2, 11), (0.36, 13), (0.85, 17), (1.5, 21), (LONGEST, 24)];
+
+/// −1/((k+1) (k+2)) for each order k.
+const SHARES: Series = {
+    let (mut shares, mut k) = (ZERO, 0);
+    while k < shares.len() {
+        shares[k] = -1.0 / ((k + 1) * (k + 2)) as f64;
+        k += 1;
+    }
+    shares
+};
+
+/// Oscillators under the same acceleration, from rest.
+#[derive(Clone, Debug)]
+struct Oscillators<const N: usize = LANES> {
+    groups: Vec<Group<N>>,
+    /// The place of each among all lanes.
+    places: Vec<usize>,
+    room: Box<Room<N>>,
+}
+
+/// Oscillators side by side. Copies of the last one fill a group.
+#[derive(Clone, Copy, Debug)]
+struct Group<const N: usize> {
+    /// How many are no copies.
+    count: usize,
+    omega: [f64; N],
+    zeta: [f64; N],
+    u: [f64; N],
+    u_dot: [f64; N],
+    /// The largest |ü + a| so far.
+    peak: [f64; N],
+    /// The largest ω max(1, 2ζ).
+    rate: f64,
+}
+
+impl<const N: usize> Oscillators<N> {
+    /// Oscillators of these periods (s) and damping ratios.
+    fn new(of: &[(f64, f64)]) -> Oscillators<N> {
+        let rate = |(T, zeta): (f64, f64)| TAU / T * f64::max(1.0, 2.0 * zeta);
+        let mut order = Vec::from_iter(0..of.len());
+        order.sort_by(|i, j| rate(of[*j]).total_cmp(&rate(of[*i])));
+        let group = |order: &[usize]| {
+            let [omega, zeta] = [|of: (f64, f64)| TAU / of.0, |of: (f64, f64)| of.1]
+                .map(|number| array::from_fn(|i| number(of[order[i.min(order.len() - 1)]])));
+            let none = [0.0; N];
+            Group { count: order.len(), omega, zeta, u: none, u_dot: none, peak: none, rate: rate(of[order[0]]) }
+        };
+        let groups = order.chunks(N).map(group).collect();
+        let mut places = vec![0; of.len()];
+        order.iter().enumerate().for_each(|(place, i)| places[*i] = place);
+        Oscillators { groups, places, room: Box::new([[0.0; N]; ZERO.len()]) }
+    }
+
+    /// Goes on for `duration` (s), over which the acceleration (m/s²) is this polynomial from 0 to 1.
+    fn see(&mut self, acceleration: &[f64], duration: f64) {
+        if duration < 1e-100 {
+            return; // its square underflows
+        }
+        self.groups.iter_mut().for_each(|group| group.see(acceleration, [duration; N], &mut self.room));
+    }
+
+    /// The largest |ü + a| of each, in m/s². The oscillators swing freely for half a period more. Their extremes after that are no larger.
+    fn end(mut self) -> Vec<f64> {
+        self.groups.iter_mut().for_each(|group| group.see(&[0.0], group.omega.map(|omega| PI / omega), &mut self.room));
+        self.places.iter().map(|place| self.groups[place / N].peak[place % N]).collect()
+    }
+}
+
+impl<const N: usize> Group<N> {
+    /// Goes on for these durations (s).
+    fn see(&mut self, acceleration: &[f64], durations: [f64; N], room: &mut Room<N>) {
+        let length = self.rate * durations.iter().fold(0.0, |most: f64, of| most.max(*of));
+        if length <= LONGEST {
+            return self.step(acceleration, durations, length, room);
+        }
+        let parts = (length / LONGEST).ceil();
+        for i in 0..parts as u64 {
+            let (mut part, count) = (series(acceleration), acceleration.len());
+            stretch(&mut part[..count], i as f64 / parts, parts.recip());
+            self.step(&part[..count], durations.map(|of| of / parts), length / parts, room);
+        }
+    }
+
+    /// Goes on by one series.
+    fn step(&mut self, acceleration: &[f64], durations: [f64; N], length: f64, room: &mut Room<N>) {
+        let order = ORDERS.iter().find(|(longest, _)| length <= *longest).map_or(ZERO.len(), |(_, order)| *order);
+        let order = order.max(acceleration.len() + 1).min(ZERO.len() - 1);
+        let step = GroupStep { group: self, acceleration, durations, room: &mut room[..=order] };
+        #[cfg(feature = "lanes")]
+        pulp::Arch::new().dispatch(step);
+        #[cfg(not(feature = "lanes"))]
+        step.take();
+    }
+}
+
+/// The coefficients of the absolute acceleration of each oscillator of a group.
+type Room<const N: usize> = [[f64; N]; ZERO.len()];
+
+/// A step of a group by one series.
+struct GroupStep<'a, const N: usize> {
+    group: &'a mut Group<N>,
+    acceleration: &'a [f64],
+    /// In s.
+    durations: [f64; N],
+    /// As many terms as are needed.
+    room: &'a mut [[f64; N]],
+}
+
+#[cfg(feature = "lanes")]
+impl<const N: usize> pulp::WithSimd for GroupStep<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.take(); // in the widest registers of the processor, with the same bits in all
+    }
+}
+
+impl<const N: usize> GroupStep<'_, N> {
+    #[inline(always)]
+    fn take(self) {
+        let GroupStep { group: Group { count, omega, zeta, u, u_dot, peak, .. }, acceleration, durations, room } = self;
+        let reach: [f64; N] = array::from_fn(|i| omega[i] * durations[i]);
+        let stiffness = reach.map(|reach| reach * reach);
+        let damping: [f64; N] = array::from_fn(|i| 2.0 * zeta[i] * reach[i]);
+        let mut y: [f64; N] = array::from_fn(|i| u[i] / (durations[i] * durations[i]));
+        let mut next: [f64; N] = array::from_fn(|i| u_dot[i] / durations[i]);
+        let [mut end, mut slope, mut off] = [[0.0; N]; 3];
+        for (k, absolute) in room.iter_mut().enumerate() {
+            let (a, share, following) = (acceleration.get(k).copied().unwrap_or(0.0), SHARES[k], (k + 1) as f64);
+            for i in 0..N {
+                let (spring, damper) = (stiffness[i] * y[i], damping[i] * following * next[i]);
+                absolute[i] = spring + damper;
+                off[i] += OFF_CHORD[k] * absolute[i].abs();
+                end[i] += y[i];
+                slope[i] += following * next[i];
+                (y[i], next[i]) = (next[i], (a + spring + damper) * share);
+            }
+        }
+        let first = room[0];
+        for i in 0..N {
+            let last = stiffness[i] * end[i] + damping[i] * slope[i];
+            (u[i], u_dot[i]) = (end[i] * durations[i] * durations[i], slope[i] * durations[i]);
+            peak[i] = peak[i].max(last.abs());
+            off[i] += first[i].abs().max(last.abs());
+        }
+        for i in 0..*count {
+            if off[i] <= peak[i] {
+                continue;
+            }
+            let mut of_one = ZERO;
+            of_one.iter_mut().zip(&*room).for_each(|(of, lanes)| *of = lanes[i]);
+            let of_one = &of_one[..room.len()];
+            peak[i] = peak[i].max(extremes::largest(of_one, 1.0));
+        }
+    }
+}
+
+/// The accelerations of floors, as oscillators on them see them.
+struct Floors {
+    outputs: Vec<Output>,
+    spectra: Vec<Oscillators>,
+}
+
+impl<Q: Coordinates> Watch<Q> for Floors {
+    fn piece(&mut self, piece: &Piece<Q>) {
+        let mut arcs = piece.arcs();
+        while let Some(expansion) = arcs.next() {
+            expansion.series(&self.outputs, &mut |part, floors| {
+                for (oscillators, floor) in self.spectra.iter_mut().zip(floors) {
+                    let (mut acceleration, count) = (series(floor.used()), floor.used().len());
+                    stretch(&mut acceleration[..count], 0.0, part.arc.reach);
+                    oscillators.see(&acceleration[..count], part.arc.duration());
+                }
+            });
+        }
+    }
+}
+
+/// An oscillator on a floor, such as what the floor contains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloorContents {
+    /// Number of the floor, from 0.
+    pub floor: usize,
+    /// Period, s.
+    pub T: f64,
+    /// Damping ratio.
+    pub zeta: f64,
+}
+
+/// S_a of each of the `contents` of the structure of `run`, at rest at the start of the run, until `end` (s), m/s².
+pub fn floor_spectra<Q: Runs>(
     run: &Run<Q>,
     end: f64,
-    acceleration: impl Fn(&Sample<Q>) -> f64,
-    periods: &[f64],
-    zeta: f64,
+    contents: &[FloorContents],
     watch: &mut dyn Watch<Q>,
 ) -> Result<Vec<f64>, RunError> {
-    let (start, ground) = (run.ground.start(), run.ground);
-    let run = Run { end: End::At(end), ..run.clone() };
-    let mut of = |count: usize| {
-        let (mut times, mut samples) = (Vec::with_capacity(count + 1), Vec::with_capacity(count + 1));
-        let show = |sample: &Sample<Q>| {
-            times.push(sample.motion.time);
-            samples.push(acceleration(sample));
-        };
-        let instants = (0..count).map(|i| start + (end - start) * (i as f64 / count as f64));
-        run.sample(instants, show, watch)?;
-        let record = Record::from_samples("", times, samples).map_err(Refused::by)?;
-        Ok::<_, RunError>(spectrum(&record, periods.iter().copied(), zeta)?)
+    let mut floors = Vec::from_iter(contents.iter().map(|of| of.floor));
+    floors.sort_unstable();
+    floors.dedup();
+    let on_floor = |floor: &usize| {
+        let on_it = contents.iter().filter(|of| of.floor == *floor).map(|of| checked((of.T, of.zeta)));
+        Ok(Oscillators::new(&on_it.collect::<Result<Vec<_>, _>>()?))
     };
-    let step = (ground.end() - start) / (ground.times().len() - 1) as f64;
-    let mut count = ((end - start) / step).ceil().min(MOST_SAMPLES as f64 / 4.0) as usize;
-    let mut before = of(count)?;
-    while count <= MOST_SAMPLES / 2 {
-        count *= 2;
-        let now = of(count)?;
-        if now.iter().zip(&before).all(|(now, before)| (now - before).abs() <= SAME * now) {
-            return Ok(now);
-        }
-        before = now;
+    let spectra = floors.iter().map(on_floor).collect::<Result<_, Refused>>()?;
+    let mut of_floors = Floors { outputs: floors.iter().map(|floor| Output::a_t(*floor)).collect(), spectra };
+    if end > run.ground.start() {
+        Run { end: End::At(end), ..run.clone() }.follow(&mut (watch, &mut of_floors))?;
     }
-    let remedy = "give the run a shorter duration, or raise zeta";
-    Err(Refused::by(format!("the spectrum still changes at {MOST_SAMPLES} samples of the floor: {remedy}")).into())
+    let mut found = Vec::from_iter(of_floors.spectra.into_iter().map(|of| of.end().into_iter()));
+    let place = |of: &FloorContents| floors.binary_search(&of.floor).expect("it is one of the floors");
+    Ok(contents.iter().filter_map(|of| found[place(of)].next()).collect())
 }
 
-/// The spectrum of `record`: S_a at each of `periods` (s) and the damping ratio `zeta`, m/s².
-pub fn spectrum(record: &Record, periods: impl IntoIterator<Item = f64>, zeta: f64) -> Result<Vec<f64>, Refused> {
-    ZETA.check(zeta)?;
-    let at = |T| Ok(PERIOD.check(T).map(|()| spectral_acceleration(record, T, zeta))?);
-    periods.into_iter().map(at).collect()
+/// An oscillator whose period (s) and damping ratio are within their ranges.
+fn checked(of: (f64, f64)) -> Result<(f64, f64), Refused> {
+    PERIOD.check(of.0)?;
+    ZETA.check(of.1)?;
+    Ok(of)
 }
 
-/// S_a of `record` at the period `T` (s) and the damping ratio `zeta` of a structure, m/s². The oscillator starts at rest. The
-/// search ends one period after the record, because the largest swing comes within a quarter of a period.
+/// The spectrum of `record`: S_a of each of the `oscillators`, given by periods (s) and damping ratios, m/s².
+pub fn spectrum(record: &Record, oscillators: impl IntoIterator<Item = (f64, f64)>) -> Result<Vec<f64>, Refused> {
+    let (mut oscillators, mut found) = (oscillators.into_iter().map(checked).peekable(), Vec::new());
+    while oscillators.peek().is_some() {
+        let some = oscillators.by_ref().take(LANES).collect::<Result<Vec<_>, _>>()?;
+        found.extend(of_record::<LANES>(record, &some));
+    }
+    Ok(found)
+}
+
+/// S_a of `record` at the period `T` (s) and the damping ratio `zeta` of a structure, m/s². The oscillator starts at rest.
 pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
-    Oscillator { omega: TAU / T, zeta }.peak(record.segments(record.end() - record.start() + T))
+    of_record::<1>(record, &[(T, zeta)])[0]
 }
 
-impl Oscillator {
-    /// Largest |ü + a_g| over `segments`, from rest, m/s².
-    fn peak(&self, segments: impl Iterator<Item = Segment>) -> f64 {
-        let mut flow_over = (f64::NAN, Matrix2::identity()); // of the last step length, which few records change
-        let mut motion = Vector2::zeros(); // (u̇, ü + a_g)
-        let mut peak: f64 = 0.0;
-        for Segment { duration: step, ground, .. } in segments {
-            let a_g = ground.on_foundation();
-            if step != flow_over.0 {
-                flow_over = (step, self.free(step));
-            }
-            let follow_ground = |a_g_now: f64| Vector2::new(-a_g.slope / self.omega.powi(2), a_g_now);
-            let free = motion - follow_ground(a_g.value);
-            let swing = libm::hypot(free[1], self.rate(free)[1] / self.omega); // bounds |ẇ| from here on
-            if a_g.value.abs().max(a_g.at(step).abs()) + swing > peak {
-                let acceleration = |tau: f64| a_g.at(tau) + (self.free(tau) * free)[1];
-                peak = self.extremes(free, a_g.slope, step).map(|tau| acceleration(tau).abs()).fold(peak, f64::max);
-            }
-            motion = follow_ground(a_g.at(step)) + flow_over.1 * free;
-        }
-        peak
+/// S_a of `record` for these oscillators, m/s².
+pub(crate) fn of_record<const N: usize>(record: &Record, oscillators: &[(f64, f64)]) -> Vec<f64> {
+    let mut oscillators = Oscillators::<N>::new(oscillators);
+    for Segment { duration, ground, .. } in record.segments(record.end() - record.start()) {
+        let a_g = ground.on_foundation();
+        oscillators.see(&[a_g.value, a_g.slope * duration], duration);
     }
-
-    /// (ẇ, ẅ) of free vibration (w, ẇ).
-    fn rate(&self, free: Vector2<f64>) -> Vector2<f64> {
-        Vector2::new(free[1], -2.0 * self.zeta * self.omega * free[1] - self.omega * self.omega * free[0])
-    }
-
-    /// The instants in (0, `step`] that hold the extremes of b τ + ẇ with b = `slope`: its stationary points, and the
-    /// end.
-    fn extremes(&self, free: Vector2<f64>, slope: f64, step: f64) -> impl Iterator<Item = f64> {
-        let swing = self.rate(self.rate(free)); // (ẅ, its rate)
-        let turns = self.zeros(self.rate(swing), step).chain([step]);
-        let rises = move |tau: f64| slope + (self.free(tau) * swing)[0] > 0.0;
-        let stationary = turns.scan(0.0, move |from, to| {
-            let low = std::mem::replace(from, to);
-            let rises_at_first = rises(low);
-            Some((rises(to) != rises_at_first).then(|| last_where(low, to, |tau| rises(tau) == rises_at_first)))
-        });
-        stationary.flatten().chain([step])
-    }
-
-    /// The instants in (0, `end`) at which free vibration (w, ẇ) passes w = 0.
-    fn zeros(&self, free: Vector2<f64>, end: f64) -> impl Iterator<Item = f64> {
-        let d = self.d();
-        let slope = free[1] + self.zeta * self.omega * free[0];
-        let (first, spacing) = if self.zeta < 1.0 {
-            (libm::atan2(d * free[0], -slope).rem_euclid(PI) / d, PI / d)
-        } else if d > 0.0 {
-            (libm::atanh(-d * free[0] / slope) / d, f64::INFINITY)
-        } else {
-            (-free[0] / slope, f64::INFINITY)
-        };
-        let first = if first > 0.0 { first } else { spacing };
-        std::iter::successors(Some(first), move |tau| Some(tau + spacing)).take_while(move |tau| *tau < end)
-    }
+    oscillators.end()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Detail, OneMass, Output, Parameters};
+    use crate::{Detail, OneMass, Parameters};
     use approx::assert_relative_eq;
     use proptest::prelude::*;
-
-    fn oscillator(T: f64, zeta: f64) -> Oscillator {
-        Oscillator { omega: TAU / T, zeta }
-    }
 
     /// The ground acceleration is 1 from the start. The peak is 1 + exp(−ζ (π − 2 asin ζ)/√(1−ζ²)) for ζ < 1, and 1 + e^{−2}
     /// for ζ = 1.
@@ -170,7 +309,7 @@ mod tests {
             for cuts in [1, 7, 1000] {
                 let times: Vec<_> = (0..=cuts).map(|i| 3.0 * f64::from(i) / f64::from(cuts)).collect();
                 let ground = Record::from_samples("", times.clone(), vec![1.0; times.len()]).unwrap();
-                let peak = oscillator(1.3, zeta).peak(ground.segments(3.0));
+                let peak = spectral_acceleration(&ground, 1.3, zeta);
                 assert_relative_eq!(peak, exact, max_relative = 1e-13);
             }
         }

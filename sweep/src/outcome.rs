@@ -2,6 +2,8 @@
 
 use crate::{Refused, ensure};
 use rocking::digits::{short, with_unit};
+use rocking::estimates::intensity::IntensityMeasure;
+use rocking::estimates::response_spectrum::{FloorContents, floor_spectra};
 use rocking::mechanics::shown::UNITS;
 use rocking::names::unknown;
 use rocking::run::fall::RunResult;
@@ -66,6 +68,20 @@ pub fn of_column(heading: &str) -> Option<&str> {
     heading.strip_prefix("peak_").or_else(|| RESIDUALS.iter().any(|of| of.name == name).then_some(heading))
 }
 
+/// The contents called `name`, such as S_a[3](0.5 s) or S_a[3](0.5 s, 2 %), with the name of their measure.
+pub(crate) fn contents(name: &str) -> Result<(FloorContents, String), Refused> {
+    let read = || {
+        let (number, oscillator) = name.strip_prefix("S_a[")?.split_once(']')?;
+        let floor = number.parse::<usize>().ok()?.checked_sub(1)?;
+        let measure = IntensityMeasure::read(&format!("S_a{oscillator}"))?;
+        let IntensityMeasure::SaAt(T, zeta) = measure else { return None };
+        let name = measure.name().replacen("S_a", &format!("S_a[{}]", floor + 1), 1);
+        Some((FloorContents { floor, T, zeta }, name))
+    };
+    let needed = "S_a[FLOOR](PERIOD) is needed, such as S_a[3](0.5 s) or S_a[3](0.5 s, 2 %); one mass is floor 1";
+    read().ok_or_else(|| Refused::by(format!("contents = {name:?}: {needed}")))
+}
+
 /// Places of the measures of one kind of structures among the measures of a plan.
 #[derive(Clone, Debug)]
 pub(crate) struct MeasurePlaces {
@@ -74,6 +90,8 @@ pub(crate) struct MeasurePlaces {
     is_of_one: bool,
     /// The place of each of [`measures`].
     places: Vec<usize>,
+    /// FloorContents, and the places of their S_a.
+    contents: (Vec<FloorContents>, Vec<usize>),
 }
 
 impl MeasurePlaces {
@@ -83,7 +101,15 @@ impl MeasurePlaces {
         let added: Vec<_> = own.iter().filter(|measure| !all.contains(measure)).cloned().collect();
         all.extend(added);
         let places = own.iter().filter_map(|own| all.iter().position(|of| of == own)).collect();
-        MeasurePlaces { outputs: Output::with_peak(structure), is_of_one: structure.is_one_mass(), places }
+        let (outputs, is_of_one) = (Output::with_peak(structure), structure.is_one_mass());
+        MeasurePlaces { outputs, is_of_one, places, contents: Default::default() }
+    }
+
+    /// Has `contents` measured, too, at this `place`. Returns whether the structures have their floor.
+    pub(crate) fn measure_too(&mut self, contents: FloorContents, place: usize) -> bool {
+        let has_floor = self.outputs.contains(&Output::a_t(contents.floor));
+        self.contents.extend(has_floor.then_some((contents, place)));
+        has_floor
     }
 
     /// Whether the measures of `structure` are these.
@@ -125,7 +151,13 @@ impl Outcome {
         found: Result<RunResult<Q>, RunError>,
     ) -> Outcome {
         let (layout, measures) = of;
-        let RunResult { peaks, finish, .. } = match found {
+        let (contents, places) = &layout.contents;
+        let with_contents = |found: RunResult<Q>| {
+            let end = found.fall.unwrap_or(found.finish.motion.time);
+            let S_a = if contents.is_empty() { Vec::new() } else { floor_spectra(run, end, contents, &mut ())? };
+            Ok((found, S_a))
+        };
+        let (RunResult { peaks, finish, .. }, S_a) = match found.and_then(with_contents) {
             Ok(found) => found,
             Err(error) => {
                 let time = error.time().unwrap_or(run.ground.start());
@@ -136,8 +168,9 @@ impl Outcome {
         let magnitudes = layout.outputs.iter().map(|of| peaks.of(*of).map_or(f64::NAN, |peak| peak.magnitude));
         let mut all = smallvec![f64::NAN; measures];
         let left = Residual::all(&run.structure).map(|of| of.of(&run.structure, &finish.motion).abs());
-        let all_of_run = magnitudes.chain([rotation]).chain(left);
-        layout.places.iter().zip(all_of_run).for_each(|(place, magnitude)| all[*place] = magnitude);
+        let (places, all_of_run) =
+            (layout.places.iter().chain(places), magnitudes.chain([rotation]).chain(left).chain(S_a));
+        places.zip(all_of_run).for_each(|(place, magnitude)| all[*place] = magnitude);
         Outcome::Ended(Summary {
             ending: finish.ending,
             end: finish.motion.time,

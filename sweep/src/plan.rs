@@ -1,6 +1,6 @@
 //! Many runs: every structure of some populations under every ground motion at every scale factor.
 
-use crate::outcome::{Measure, MeasurePlaces, Outcome};
+use crate::outcome::{self, Measure, MeasurePlaces, Outcome};
 use crate::{Refused, ensure};
 use rocking::digits::with_unit;
 use rocking::engine::{DEFAULT_TOLERANCE, Settings};
@@ -370,6 +370,20 @@ impl Plan {
         Ok(plan)
     }
 
+    /// The plan with the measure S_a of each of these `contents`, such as S_a[3](0.5 s): an oscillator of this period on floor 3, with 5 %
+    /// damping or, as in S_a[3](0.5 s, 2 %), another.
+    pub fn with_contents(mut self, contents: &[String]) -> Result<Plan, Refused> {
+        for given in contents {
+            let (contents, name) = outcome::contents(given)?;
+            ensure(self.measures.iter().all(|(of, _)| *of != name), || is_there_twice(&name))?;
+            let has_floor = self.layouts.iter_mut().map(|of| of.measure_too(contents, self.measures.len()));
+            let have_floor = has_floor.filter(|has_floor| *has_floor).count();
+            ensure(have_floor > 0, || format!("{name}: no structure has a floor {}", contents.floor + 1))?;
+            self.measures.push((name, "m/s2".into()));
+        }
+        Ok(self)
+    }
+
     /// Numbers of structures, ground motions and scale factors.
     pub fn size(&self) -> [usize; 3] {
         let structures = self.populations.iter().fold(0, |sum: usize, population| sum.saturating_add(population.len()));
@@ -586,6 +600,7 @@ mod tests {
     use super::*;
     use crate::exceedances::count;
     use crate::outcome::{Limit, Summary};
+    use rocking::estimates::response_spectrum::{FloorContents, floor_spectra};
     use rocking::run::{End, Ending};
     use rocking::structure::description::{Damping, Storey};
     use rocking::structure::natural_quantities::Numbers;
@@ -609,7 +624,7 @@ mod tests {
         Structure::new(parameters).unwrap()
     }
 
-    /// The bits are those of the library, run by run; a limit on all floors counts the largest of them.
+    /// The bits are those of the library, run by run, contents included; a limit on all floors counts the largest of them.
     #[test]
     fn a_building_is_swept_and_counted() {
         let storeys = [(4e4, 3.5, 6e7), (4e4, 7.0, 5e7), (3e4, 10.5, 4e7)].map(|(m, h, k)| Storey { m, h, k });
@@ -621,26 +636,43 @@ mod tests {
         let pier = Population::new("pier", structure(Parameters::MCMANUS));
         let slow = NamedRecord::new("slow", pulse().record.scaled(2.0, 1.0).unwrap(), 1.0).unwrap();
         let plan = usual(vec![cores, pier], vec![pulse(), slow], vec![0.3, 0.6, 0.9, 1.2]);
+        let contents = [(2, 0.1, 0.05, "S_a[3](0.1 s)"), (0, 0.3, 0.02, "S_a[1](0.30 s, 2 %)")];
+        let plan = plan.with_contents(&contents.map(|(.., name)| name.into())).unwrap();
+        let contents = contents.map(|(floor, T, zeta, _)| FloorContents { floor, T, zeta });
         let (outcomes, mut largest) = (Vec::from_iter(plan.cases().map(|case| case.outcome())), Vec::new());
         for (case, outcome) in plan.cases().zip(&outcomes).take(16) {
             let ground = case.motion.record.clone().multiplied(case.scale);
             let structure = core(if largest.len() < 8 { 0.0 } else { 1e6 });
-            let found = Run::of_modes(structure.clone(), &ground).found(&mut ()).unwrap();
+            let run = Run::of_modes(structure.clone(), &ground);
+            let found = run.found(&mut ()).unwrap();
             let Outcome::Ended(Summary { ending, end, peaks, .. }) = outcome else { panic!() };
             assert_eq!((*ending, *end), (found.finish.ending, found.finish.motion.time));
             let named: BTreeMap<_, _> = plan.measures.iter().map(|(name, _)| &**name).zip(peaks).collect();
             for of in Output::with_peak(&structure) {
                 assert_eq!(*named[&*of.name(&structure)], found.peaks.of(of).unwrap().magnitude, "{of:?}");
             }
+            let until = found.fall.unwrap_or(found.finish.motion.time);
+            let expected = floor_spectra(&run, until, &contents, &mut ()).unwrap();
+            assert_eq!(["S_a[3](0.1 s)", "S_a[1](0.3 s, 2 %)"].map(|name| *named[name])[..], expected);
             largest.push(["a_t[1]", "a_t[2]", "a_t[3]"].map(|a_t| *named[a_t]).into_iter().fold(0.0, f64::max));
         }
-        let limits = ["a_t >= 0.5 g", "drift[2] >= 15 mm"].map(|text| Limit::read(text, &plan.measures).unwrap());
+        let limits = ["a_t >= 0.5 g", "drift[2] >= 15 mm", "S_a[3](0.1 s) >= 1 g"]
+            .map(|text| Limit::read(text, &plan.measures).unwrap());
         let [cores, pier] = &count(&plan, IntensityMeasure::Pga, &limits, &outcomes)[..] else { panic!() };
         let exceeding = |of: usize| cores.fragilities[of].tallies.iter().map(|tally| tally.exceedances).sum::<usize>();
         let own = largest.iter().filter(|a_t| **a_t >= 0.5 * 9.81).count();
         assert!((1..16).contains(&own), "{largest:?}");
         assert_eq!(exceeding(1), own);
-        assert_eq!(pier.fragilities[2].curve, Err(Refused::by("no run is counted")));
+        assert!((1..16).contains(&exceeding(3)));
+        for not_of_pier in [2, 3] {
+            assert_eq!(pier.fragilities[not_of_pier].curve, Err(Refused::by("no run is counted")));
+        }
+        for (name, refused) in [
+            ("S_a[4](1 s)", "S_a[4](1 s): no structure has a floor 4"),
+            ("S_a(1 s)", "contents = \"S_a(1 s)\": S_a[FLOOR]"),
+        ] {
+            assert!(plan.clone().with_contents(&[name.into()]).unwrap_err().to_string().starts_with(refused));
+        }
     }
 
     #[test]

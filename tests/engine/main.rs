@@ -16,6 +16,7 @@ mod restrained;
 mod rooms;
 mod runs;
 mod slipping;
+mod spectra;
 mod tolerance;
 mod top_force;
 mod validity;

@@ -168,8 +168,8 @@ impl Explorer {
     pub fn spectra(&mut self, fields: &str) -> Result<String, String> {
         let (_, run, _) = self.load(fields)?;
         let (found, periods) = (run.found(None, &mut ()).map_err(says)?, usual_periods());
-        let of = |floor| run.spectrum(&found, floor, &periods, 0.05, &mut ());
-        let spectra = (0..run.structure.floors().len()).map(of).collect::<Result<Vec<_>, _>>();
+        let floors = Vec::from_iter(0..run.structure.floors().len());
+        let spectra = run.spectra(&found, &floors, &periods, 0.05, &mut ());
         Ok(json!([periods, spectra.map_err(|error| rocking_report::message(&error))?]).to_string())
     }
 

@@ -60,6 +60,9 @@ struct SweepFile {
     #[serde(default)]
     initial: InitialArgs,
     intensity: Option<String>,
+    /// Oscillators on floors, by the names of their S_a.
+    #[serde(default)]
+    contents: Vec<String>,
     /// One or several by the name of a measure, in its own unit or with a usual one.
     #[serde(default)]
     limits: toml::Table,
@@ -197,7 +200,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<SweepContent
             let design = Design { sought, structure: base, motions: motions?, scales, conditions };
             return Ok(SweepContent::Design(Box::new(design), records));
         }
-        let plan = Plan::new(populations, motions?, scales, conditions)?;
+        let plan = Plan::new(populations, motions?, scales, conditions)?.with_contents(&file.contents)?;
         all_warn(plan.doubts.clone());
         let limits = limits(&file.limits, &plan.measures).context("limits")?;
         limits.iter().try_for_each(|limit| limit.check(plan.widest)).context("limits")?;
