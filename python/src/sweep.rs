@@ -13,7 +13,7 @@ use pyo3::types::{PyDict, PyList, PyString};
 use rocking::Detail;
 use rocking::run::Ending;
 use rocking_report::run::Watcher;
-use rocking_sweep::design::{Design, Designed, Sought};
+use rocking_sweep::design::{Design, Designed, Goal};
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
 use rocking_sweep::map::{Axis, GridPlace, HEADINGS, MAX_REFINEMENTS, Map, MapPoint};
@@ -159,7 +159,7 @@ pub fn design(
     threads: i64,
 ) -> PyResult<FoundDesign> {
     let design = Design {
-        sought: Sought { vary, between, limit, share, count, log, refine },
+        sought: Goal { vary, between, limit, share, count, log, refine },
         structure: structure.of.clone(),
         motions: motions(&records, [structure].into_iter())?,
         scales: numbers("scale", scale)?,

@@ -26,7 +26,7 @@ const PARTS: usize = 8;
 /// What is sought.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Sought {
+pub struct Goal {
     /// Name of the number, as in [`Population::vary`].
     pub vary: String,
     /// First and last value.
@@ -43,10 +43,10 @@ pub struct Sought {
     pub refine: u32,
 }
 
-impl Default for Sought {
-    fn default() -> Sought {
+impl Default for Goal {
+    fn default() -> Goal {
         let (vary, limit, between) = (String::new(), Vec::new(), [0.0; 2]);
-        Sought { vary, between, limit, share: 0.84, count: 25, log: false, refine: 3 }
+        Goal { vary, between, limit, share: 0.84, count: 25, log: false, refine: 3 }
     }
 }
 
@@ -54,7 +54,7 @@ impl Default for Sought {
 #[derive(Clone, Debug)]
 pub struct Design {
     /// What is sought.
-    pub sought: Sought,
+    pub sought: Goal,
     /// The structure, whose own value of the number does not matter.
     pub structure: Structure,
     /// The ground motions.
@@ -98,7 +98,7 @@ impl Design {
     /// The curve, by rising value. The runs of each pass are done on all threads; after each, `goes_on` is told how many are done, of
     /// how many so far, and says whether to go on.
     pub fn complete(&self, goes_on: impl Fn(usize, usize) -> bool + Sync) -> anyhow::Result<Vec<DesignPoint>> {
-        let &Sought { ref vary, between: [low, high], ref limit, share, count, log, refine } = &self.sought;
+        let &Goal { ref vary, between: [low, high], ref limit, share, count, log, refine } = &self.sought;
         ensure(low < high && high.is_finite() && (low > 0.0 || !log && low.is_finite()), || {
             format!("between = {low:?}, {high:?}: {vary} needs two rising numbers, greater than 0 if log is true")
         })?;
@@ -253,14 +253,14 @@ mod tests {
     fn design(vary: &str, between: [f64; 2], limits: &[&str], share: f64) -> Design {
         let records = [("a", 0.5, 0.5), ("b", 0.7, 0.6), ("c", 1.0, 0.45), ("d", 0.4, 0.9), ("e", 1.2, 0.5)];
         Design {
-            sought: Sought {
+            sought: Goal {
                 vary: vary.into(),
                 between,
                 limit: limits.iter().map(|of| (*of).to_owned()).collect(),
                 share,
                 count: 9,
                 refine: 2,
-                ..Sought::default()
+                ..Goal::default()
             },
             structure: Structure::new(Parameters::MCMANUS).unwrap(),
             motions: records.map(|(name, period, amplitude)| sine(name, period, amplitude)).into(),
@@ -299,7 +299,7 @@ mod tests {
     #[test]
     fn all_crossings_of_a_demand_that_is_not_monotone_are_said() {
         let all = design("B", [0.1, 0.4], &["stands"], 1.0);
-        let one = Design { motions: vec![all.motions[3].clone()], sought: Sought { refine: 3, ..all.sought }, ..all };
+        let one = Design { motions: vec![all.motions[3].clone()], sought: Goal { refine: 3, ..all.sought }, ..all };
         let points = one.complete(|_, _| true).unwrap();
         let Designed { value, holds, crossings, sentence } = one.found(&points);
         assert_eq!((value, holds.len(), crossings.len()), (None, 2, 2), "{sentence}");
@@ -325,12 +325,12 @@ mod tests {
         let with = |sought| Design { sought, ..far.clone() };
         let refused = |of: Design| of.complete(|_, _| true).unwrap_err().to_string();
         for (of, starts) in [
-            (with(Sought { share: 84.0, ..far.sought.clone() }), "share = 84.0 is out of range"),
+            (with(Goal { share: 84.0, ..far.sought.clone() }), "share = 84.0 is out of range"),
             (
-                with(Sought { between: [2.0, 1.0], ..far.sought.clone() }),
+                with(Goal { between: [2.0, 1.0], ..far.sought.clone() }),
                 "between = 2.0, 1.0: P_0 needs two rising numbers",
             ),
-            (with(Sought { log: true, ..far.sought.clone() }), "between = 0.0, 10000.0: P_0 needs two rising numbers"),
+            (with(Goal { log: true, ..far.sought.clone() }), "between = 0.0, 10000.0: P_0 needs two rising numbers"),
             (design("P_0", [0.0, 1.0], &["theta >= 3 deg"], 0.5), "limit = \"theta >= 3 deg\": MEASURE <= VALUE"),
             (design("P_1", [0.0, 1.0], &["stands"], 0.5), "\"P_1\" cannot vary: these can: m, "),
         ] {

@@ -10,7 +10,7 @@ use rocking::structure::natural_quantities::Numbers;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_report::{input, output_files::OutputFiles, structure_file};
-use rocking_sweep::design::{Design, Sought};
+use rocking_sweep::design::{Design, Goal};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::{Limit, Measure};
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population, measure};
@@ -66,7 +66,7 @@ struct SweepFile {
     /// One or several by the name of a measure, in its own unit or with a usual one.
     #[serde(default)]
     limits: toml::Table,
-    design: Option<Sought>,
+    design: Option<Goal>,
 }
 
 /// The file with `pulses`.
