@@ -148,7 +148,7 @@ class Fmu:
         self.description = fmpy.read_model_description(str(path))
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
         self.outputs = [name for name, variable in self.variables.items() if variable.causality == "output"]
-        self.peaks = [name for name, variable in self.variables.items() if (variable.description or "").startswith("largest |")]
+        self.peaks = [name for name, variable in self.variables.items() if "| since startTime, exact" in (variable.description or "")]
 
     def instance(self, kind: str = "CoSimulation", **how) -> Instance:
         """A new instance, not yet initialized."""

@@ -104,17 +104,10 @@ def test_ground_is_known_and_a_fixed_base_has_no_outputs_of_it(export_frame):
     assert (host["y"] == 0).all() and np.isnan(host["N_left"]).all()
 
 
-@pytest.mark.parametrize("fmi", (2, 3))
-def test_numbers_that_a_host_sets_are_those_that_an_export_has(export_frame, fmi):
-    """To the last bit: the motion and all that is calculated. A refusal names the number."""
-    springs, stiff = "k_v = 5e8\nzeta_v = 0.1\nn_points = 3\nmu_c = 0.4\nfs = 5", FRAME.stiffness
-    softer, taller = replace(FRAME, stiffness=(stiff[0], 3e7, stiff[2])), replace(FRAME, masses=(5e4, *FRAME.masses[1:]), heights=(*FRAME.heights[:2], 11.5), zeta=0.03)
-    cases = [({"B": 1.7}, (replace(FRAME, B=1.7), Ties(), springs)), ({"k[2]": 3e7}, (softer, Ties(), springs)),
-             ({"m[1]": 5e4, "h[3]": 11.5, "zeta": 0.03}, (taller, Ties(), springs)),
-             ({"k_v": 7e8, "zeta_v": 0.3, "kr_ratio": 0.5}, (FRAME, Ties(), "k_v = 7e8\nzeta_v = 0.3\nkr_ratio = 0.5\nn_points = 3\nmu_c = 0.4\nfs = 5")),
-             ({"mu_c": 0.1, "fs": 1.2}, (FRAME, Ties(), springs.replace("0.4", "0.1").replace("fs = 5", "fs = 1.2"))),
-             ({"P_0": 4e5, "k_t": 1e6}, (FRAME, Ties(P_0=4e5, k_t=1e6), springs))]
-    base, _ = export_frame(ground=springs, fmi=fmi)
+def over_one_fmu(export_frame, fmi, cases) -> Fmu:
+    """The FMU of a frame on springs, over which values that a host sets give the bits of an FMU that was exported with them: the motion, and
+    all that is calculated."""
+    base, _ = export_frame(ground=springs(5e8), fmi=fmi)
     calculated = [of.name for of in base.description.modelVariables if of.causality == "calculatedParameter"]
     names = [*calculated, "theta", "y", "P_t", "V_t", *floors("u", "a_t"), "P_t_max", "N_left", "x", "s[3]"]
 
@@ -129,10 +122,50 @@ def test_numbers_that_a_host_sets_are_those_that_an_export_has(export_frame, fmi
         exported, _ = export_frame(frame, ties, ground=ground, fmi=fmi)
         with base.start(peaks=True, **values) as one, exported.start(peaks=True) as other:
             np.testing.assert_array_equal(moved(one), moved(other), err_msg=str(values))
+    return base
+
+
+def springs(k_v: float, others: str = "zeta_v = 0.1", mu_c: float = 0.4, fs: float = 5.0) -> str:
+    return f"k_v = {k_v!r}\n{others}\nn_points = 3\nmu_c = {mu_c}\nfs = {fs}"
+
+
+def softer(k: float, **others):
+    """The frame with this stiffness of its second storey."""
+    return replace(FRAME, stiffness=(FRAME.stiffness[0], k, FRAME.stiffness[2]), **others)
+
+
+@pytest.mark.parametrize("fmi", (2, 3))
+def test_numbers_that_a_host_sets_are_those_that_an_export_has(export_frame, fmi):
+    """To the last bit. A refusal names the number."""
+    taller = replace(FRAME, masses=(5e4, *FRAME.masses[1:]), heights=(*FRAME.heights[:2], 11.5), zeta=0.03)
+    base = over_one_fmu(export_frame, fmi, [
+        ({"B": 1.7}, (replace(FRAME, B=1.7), Ties(), springs(5e8))), ({"k[2]": 3e7}, (softer(3e7), Ties(), springs(5e8))),
+        ({"m[1]": 5e4, "h[3]": 11.5, "zeta": 0.03}, (taller, Ties(), springs(5e8))),
+        ({"k_v": 7e8, "zeta_v": 0.3, "kr_ratio": 0.5}, (FRAME, Ties(), springs(7e8, "zeta_v = 0.3\nkr_ratio = 0.5"))),
+        ({"mu_c": 0.1, "fs": 1.2}, (FRAME, Ties(), springs(5e8, mu_c=0.1, fs=1.2))),
+        ({"P_0": 4e5, "k_t": 1e6}, (FRAME, Ties(P_0=4e5, k_t=1e6), springs(5e8)))])
     with base.instance() as instance:
         with pytest.raises(FMICallException):
             instance.initialize(**{"h[2]": 3.0})
         assert "floor 2 is at h = 3 m and the floor below it at 3.5 m" in instance.messages[-1].text
+
+
+@pytest.mark.parametrize("fmi", (2, 3))
+def test_derivatives_by_numbers_of_a_building_on_springs_are_their_differences(export_frame, fmi):
+    """While the base rocks on some of its points: of what is calculated, of accelerations and of forces."""
+    fmu, _ = export_frame(ties=Ties(P_0=4e5, k_t=1e6), ground="k_v = 5e8\nzeta_v = 0.1\nn_points = 3", fmi=fmi)
+    at = dict(zip(floors("u_0", "u_dot_0"), (1e-3, 2e-3, -1e-3, 0.1, -0.2, 0.3))) | {"theta_0": 0.01, "theta_dot_0": 0.1}
+    unknowns = ["f[1]", "f_u[2]", "y_s", "chi[1]", "alpha_cg", "der(theta_dot)", "der(y_dot)", *floors("a_t"), "M_t", "P_t", "N_left", "N_right", "R_v"]
+    with fmu.instance() as instance:
+        instance.enter(**at)
+        for name in ("B", "k[2]", "m[1]", "h[3]", "zeta", "k_v", "zeta_v", "kr_ratio", "P_0"):
+            value, found = instance.get(name), instance.derive(unknowns, (name, 1.0))
+            ends = []
+            for change in (1e-5, -1e-5):
+                with fmu.instance() as beside:
+                    ends.append(np.array(beside.enter(**at, **{name: value * (1 + change)}).get(*unknowns)))
+            expected, scale = (ends[0] - ends[1]) / (2e-5 * value), (np.abs(ends[0]) + np.abs(ends[1])) / value
+            assert (np.abs(found - expected) <= 1e-6 * scale).all() and expected.any(), (name, found, expected)
 
 
 def test_a_pier_has_its_names_and_its_parameters_on_springs(export, tmp_path):

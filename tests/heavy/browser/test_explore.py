@@ -1,11 +1,15 @@
 """The page of `make explore`: its numbers beside the command line's in Chromium and Firefox, its controls, its messages."""
 
 import base64
+import csv
+import inspect
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+import tomllib
 import zipfile
 from functools import partial
 from http.server import HTTPServer, SimpleHTTPRequestHandler
@@ -13,12 +17,13 @@ from pathlib import Path
 from random import Random
 from urllib.parse import urlencode
 
+import flexible_rocking as fr
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from conftest import ROOT
 from evidence.scenes import RECORD, SCALE, TIME_SCALE
-from host import output, refusal
+from host import Fmu, output, refusal
 from PIL import Image
 from test_doors import SCENES, at_end
 from test_view import SCALES, clock, number, reading, wait
@@ -203,6 +208,54 @@ def test_a_scene_is_the_same_by_its_command_and_by_its_script(opened, exporter, 
             periods, spectra = json.loads(page.evaluate("fields => new wasm_bindgen.Explorer().spectra(JSON.stringify(fields))", fields))
             by_command_line(exporter, folder, text(page, "#command") + " --spectrum=floors.csv")
             assert np.loadtxt(folder / "floors.csv", delimiter=",", skiprows=1).T.tolist() == [periods, *spectra]
+
+
+def numbers(tables: dict, ending: str = ""):
+    """The numbers in the tables of a structure's file, by their names at the other doors. The number of contact points is no variable."""
+    for name, of in tables.items():
+        if isinstance(of, dict):
+            yield from numbers(of)
+        elif isinstance(of, list):
+            for i, row in enumerate(of, 1):
+                yield from numbers(row, f"[{i}]")
+        elif name != "n_points":
+            yield name + ending, of
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")  # of r on ground that gives
+@pytest.mark.parametrize("ground", [None, fr.Ground(k_v=4e5, zeta_v=0.1, n_points=3, kr_ratio=0.5)])
+@pytest.mark.parametrize("storeys", [None, [dict(m=60, h=1.0, k=5e4), dict(m=50, h=1.9, k=4e4)]])
+def test_each_parameter_is_at_every_door(opened, exporter, tmp_path, storeys, ground):
+    """The rows of the library's table, of which a specimen has all, each with its value: keywords, file, template, help, rows of a sweep, FMU
+    and the page's form."""
+    table = {name: number or 0.125 for name, number in fr.Structure(preset="mcmanus").parameters.items()}
+    many = storeys and dict(storeys=storeys, zeta=0.02)
+    of_base = fr.Structure(m0=50.0, J0=1.0, B=0.3, r=0.9, **many).parameters["base"] if storeys else table
+    structure = fr.Structure(**{name: table[name] for name in of_base}, **many or {}, ground=ground)
+    named, file = dict(numbers(structure.parameters)), tmp_path / "structure.toml"
+    assert named.keys() >= of_base.keys() and set(table) <= set(inspect.signature(fr.Structure).parameters)
+    assert all(f"    {name}: " in Path(fr.__file__).with_name("_native.pyi").read_text() for name in table)
+    structure.write(file)
+    assert fr.Structure(**structure.parameters) == fr.Structure.read(file) == structure
+    assert dict(numbers(tomllib.loads(file.read_text()))) == named
+    assert output(exporter, "--quiet", "describe", "--template", "--parameters", file) == file.read_text()
+    shown = output(exporter, "describe", "--help")
+    assert all(f"--{name.replace('_', '-')} <" in shown for name in table)
+    (tmp_path / "rest.csv").write_text("t (s),a (m/s2)\n0,0\n0.1,0.1\n")
+    (tmp_path / "sweep.toml").write_text("scale = [1]\n[[records]]\nfile = 'rest.csv'\n[[structures]]\nname = 'one'\nfile = 'structure.toml'\n")
+    output(exporter, "--quiet", "sweep", "sweep.toml", "-o", "rows.csv", cwd=tmp_path)
+    [row] = csv.DictReader((tmp_path / "rows.csv").open())
+    row = {re.sub(r"\[[^\[\]]*[^\[\]\d][^\[\]]*\]$", "", name): of for name, of in row.items()}
+    assert {name: float(row[name]) for name in named} == named
+    for fmi in 2, 3:
+        fmu = Fmu(fr.export(tmp_path / "structure.fmu", structure, fmi=fmi))
+        assert {name: float(fmu.variables[name].start) for name in named} == named
+        assert {fmu.variables[name].causality for name in named} == {"parameter"}
+    page = opened(dict(preset="mcmanus") | (FRAME if storeys else {}) | (dict(k_v="4e5", n_points="3") if ground else {}))
+    for name in named.keys() - {"kr_ratio"}:  # which the page leaves at its default
+        symbol, _, number = name.partition("[")
+        field = f"storey {number[:-1]}: {symbol}" if number else name
+        assert page.locator(f"#controls [name='{field}']").count() == 1, name
 
 
 @pytest.mark.parametrize("link, why", [
