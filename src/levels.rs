@@ -21,7 +21,7 @@ pub(crate) mod modes;
 pub mod nonlinear;
 pub(crate) mod on_ground;
 pub(crate) mod oscillator;
-mod sliding;
+pub(crate) mod sliding;
 pub(crate) mod start;
 pub mod uplift;
 

@@ -13,6 +13,7 @@ use crate::engine::step::{Branch, Step, see};
 use crate::engine::transition::TransitionKind;
 use crate::engine::yielding::{product_integral, square_integral};
 use crate::levels::level::Level;
+use crate::levels::sliding::mobility;
 use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::{margins, reserves};
@@ -22,7 +23,7 @@ use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{ORDERS, Series, ZERO, evaluate, product, sum_of_magnitudes, weighed_sum};
 use crate::series::terms::Terms;
 use crate::structure::ground::{ContactPoint, Footing};
-use crate::{Foundation, Friction, Mode, Output, Phase, PressedPoints, Side, State, Structure, Ties};
+use crate::{Base, Foundation, Friction, Mode, Output, Phase, PressedPoints, Side, State, Structure, Ties};
 
 /// Part of its terms by which a gap may miss its root.
 const ROUNDING: f64 = 1e-13;
@@ -70,11 +71,6 @@ impl Rises {
         height[0] += more;
         let rates = y[1][0].abs() + (xi * sin[1][0]).abs();
         (height, ROUNDING * (scale + (xi * sin[0][0]).abs() + tau * rates + more.abs()))
-    }
-
-    /// The rate at which a `point` on its capacity settles that counts as 0, m/s.
-    fn rounding(&self, point: &ContactPoint) -> f64 {
-        if point.c > 0.0 { ROUNDING * (self.scale * point.k + point.q) / point.c } else { 0.0 }
     }
 
     /// The rate of the height at ξ, and what counts as 0 of it.
@@ -129,7 +125,9 @@ impl<Q: Coordinates> Guard<Q> for Points {
             let reach = found.0.sigma().min(reach);
             if contact.yields(i) {
                 let settles = std::array::from_fn(|k| arc.u_dot[k].settlement(foundation, i));
-                let rate = (settles, rises.rate(point.xi).1 + rises.rounding(point));
+                // as much as of the force less the capacity, from which a point begins to yield
+                let off = if point.c > 0.0 { pushes(point.q / point.k).1 * point.k / point.c } else { 0.0 };
+                let rate = (settles, rises.rate(point.xi).1 + off);
                 see(&mut found, first([rises.gap(&rate, 1.0)], reach), i, ELASTIC);
                 continue;
             }
@@ -348,12 +346,14 @@ struct Needed {
     linear: Series,
     /// The rate of μ over the step.
     rate: Series,
+    /// What counts as 0 of R_h at the start.
+    rounding: f64,
 }
 
 impl Needed {
     fn new<Q: Coordinates>(structure: &Structure, start: &Start<Q>, arc: &Arc<Q>) -> Needed {
         let (ground, modes) = (structure.ground(), structure.modes());
-        let (m_t, S_1) = (structure.base().m_t, structure.body().S_1);
+        let (&Base { m_t, g, .. }, S_1) = (structure.base(), structure.body().S_1);
         let (mut linear, mut rate) = (ZERO, ZERO);
         for (k, u_dot) in arc.used(&arc.u_dot).iter().enumerate() {
             rate[k] = offset(modes, u_dot);
@@ -370,7 +370,9 @@ impl Needed {
         {
             linear[k] += scale * (m_t * a_g - pushed(a_g, a_top));
         }
-        Needed { linear, rate }
+        let slopes = modes.iter().enumerate().map(|(j, mode)| mode.gamma * arc.u_dot[1].of(j));
+        let forces = slopes.chain([S_1 * arc.u_dot[1].footing(ground).sin]).map(|of| of.abs() / arc.span).sum::<f64>();
+        Needed { linear, rate, rounding: ROUNDING * (m_t * (g + start.a_g.value.abs()) + forces) }
     }
 
     /// Bound of the part that is left out.
@@ -421,9 +423,10 @@ fn stopped<Q: Coordinates>(
     let start = Start { state, a_g, a_top, a_v, interval: level.longest_step(), ..*start };
     let mut arc = Arc::default();
     level.series(Phase::OnGround(contact), &start, &mut arc);
-    let needed = Needed::new(structure, &start, &arc).series(structure, &arc)[0];
+    let needed = Needed::new(structure, &start, &arc);
+    let (rounding, needed) = (needed.rounding, needed.series(structure, &arc)[0]);
     let most = ground.mu_c.unwrap_or(0.0) * normal(ground, contact, &state, &arc)[0];
-    match needed.abs() > most + ROUNDING * structure.base().m_t * structure.base().g {
+    match needed.abs() > most + rounding {
         true => Friction::Slides(Side::of(-needed)),
         false => Friction::Sticks,
     }
@@ -468,8 +471,7 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
                 if is_open(1.0) && is_open(-1.0) {
                     return none;
                 }
-                let (needed, mut found) = (needed.series(structure, arc), none);
-                let rounding = ROUNDING * structure.base().m_t * structure.base().g;
+                let (rounding, needed, mut found) = (needed.rounding, needed.series(structure, arc), none);
                 let part = arc.span / level.longest_step();
                 for (sign, slides) in [(1.0, Side::Left), (-1.0, Side::Right)] {
                     let gap = (side(&needed, sign), rounding);
@@ -482,9 +484,10 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
                 found
             }
             Friction::Slides(side) => {
-                let rounding = ROUNDING * structure.base().g * level.longest_step();
                 let rate = std::array::from_fn(|k| arc.u_dot[k].slide(ground).unwrap_or(0.0));
-                let gap = (rate, if x_dot == 0.0 { rounding } else { 0.0 });
+                // a slip begins where friction misses what is needed by no more than its rounding on each side
+                let off = || 2.0 * Needed::new(structure, start, arc).rounding * mobility(structure, &start.state);
+                let gap = (rate, if x_dot == 0.0 { off() * level.longest_step() } else { 0.0 });
                 match first([opened(&gap, side.sign(), arc.order, arc.span / level.longest_step())], reach) {
                     Crossing::At(sigma) => {
                         let state = arc.at(sigma);

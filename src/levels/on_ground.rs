@@ -181,8 +181,9 @@ impl<V: Abreast> OnGround<V> {
         }
     }
 
-    /// The truncation that `start` requires over a step of `span` s.
-    pub(super) fn truncation(&self, start: &Start<Modes>, span: f64) -> Truncation<Modes> {
+    /// The truncation that `start` requires over a step of `span` s; the power that the ground takes counts if the base moves over the ground,
+    /// or into it.
+    pub(super) fn truncation(&self, start: &Start<Modes>, span: f64, moves_on: bool) -> Truncation<Modes> {
         let (structure, state) = (&self.subject.structure, &start.state);
         let (&Base { m_t, g, tan_alpha_cg, .. }, ground) = (structure.base(), structure.ground());
         let size = |of: &dyn Fn(usize, f64) -> f64| {
@@ -194,9 +195,10 @@ impl<V: Abreast> OnGround<V> {
         let lift = start.a_v.value.abs() + span * start.a_v.slope.abs() + state.u_dot.footing(ground).y.abs();
         let velocity = size(&|j, _| state.u_dot.of(j)) + lift + span.min(1.0 / self.lowest) * forcing;
         let theta_dot = start.local_error * (state.theta_dot.abs() + velocity / self.radius);
+        let power = if moves_on { start.local_error * m_t * velocity * velocity / span } else { f64::INFINITY };
         let velocity = start.local_error * velocity;
         let mut u_dot = Modes::each(structure, |_, mode| velocity * (m_t / mode.mass).sqrt());
-        u_dot.set_footing(ground, Footing { y: velocity, sin: theta_dot, taken: f64::INFINITY });
+        u_dot.set_footing(ground, Footing { y: velocity, sin: theta_dot, taken: power });
         ground.beside().for_each(|place| u_dot.set(place, velocity));
         Truncation { u_dot, theta_dot }
     }
@@ -245,7 +247,7 @@ impl<V: Abreast> OnGround<V> {
         state.u_dot.set_footing(under, Footing { sin: turning, ..state.u_dot.footing(under) });
         under.rest_beside(&mut state.u_dot);
         under.settle(contact, &state.u, &mut state.u_dot, 0);
-        let truncation = self.truncation(start, span);
+        let truncation = self.truncation(start, span, contact.yields != 0);
         let per_span = 1.0 / span;
         arc.expand(&state, span, &truncation, |arc, order, per| {
             let (n, rate) = (order - 1, order as f64 * per_span);
@@ -323,7 +325,10 @@ impl<V: Abreast> OnGround<V> {
             (turning, turning_sin) = (turning_cos + theta_dot * cos_0, sin_turning + theta_dot * sin_0);
             (sin_before, cos_before, sin, cos, offset) = (sin, cos, next_sin, next_cos, next_offset);
             new.set_footing(under, Footing { y, sin, taken: power * per });
-            new_rate.set_footing(under, Footing { y: y_dot, sin: turning, taken: 0.0 });
+            new_rate.set_footing(
+                under,
+                Footing { y: y_dot, sin: turning, taken: if contact.yields != 0 { power } else { 0.0 } },
+            );
             if has_more {
                 under.rest_beside(new_rate);
             }

@@ -19,7 +19,7 @@ use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::series::taylor::{LONGEST_SPAN, Series, ZERO, product};
 use crate::structure::ground::{ContactPoint, FOOTING, Footing, free_mass};
 use crate::structure::mode::Modes;
-use crate::{Base, Foundation, Friction, PressedPoints, State};
+use crate::{Base, Foundation, Friction, Mode, PressedPoints, State, Structure};
 use std::ops::Range;
 
 impl Foundation {
@@ -76,6 +76,16 @@ impl Foundation {
     }
 }
 
+/// The acceleration of the middle of the base in `state` for each newton of friction, 1/kg (S4).
+pub(crate) fn mobility<Q: Coordinates>(structure: &Structure, state: &State<Q>) -> f64 {
+    let (&Base { m_t, J0, S_res, .. }, modes) = (structure.base(), structure.modes());
+    let sum = |of: &dyn Fn(&Mode, f64) -> f64| modes.iter().enumerate().map(|(j, mode)| of(mode, state.u.of(j))).sum();
+    let (offset, inertia): (f64, f64) = (sum(&|mode, u| mode.gamma * u), sum(&|mode, u| mode.mass * u * u));
+    let ((sin, cos), free) = (libm::sincos(state.theta), free_mass(structure.base(), modes));
+    let turning = J0 + inertia - S_res * S_res / free - offset * offset / m_t;
+    cos * cos / free + sin * sin / m_t + (offset * sin / m_t - S_res * cos / free).powi(2) / turning
+}
+
 impl<V: Abreast> OnGround<V> {
     /// Writes the motion of a base that slides or flies with these pressed points into `arc` (S3).
     pub(super) fn slide(&self, contact: PressedPoints, start: &Start<Modes>, arc: &mut Arc<Modes>) {
@@ -118,7 +128,7 @@ impl<V: Abreast> OnGround<V> {
         let D = J0 + inertia[0];
         let delta = D - S_res * S_res / free - offset * offset / m_t;
         let per_span = 1.0 / span;
-        let truncation = self.truncation(start, span);
+        let truncation = self.truncation(start, span, true);
         arc.expand(&state, span, &truncation, |arc, order, per| {
             let n = order - 1;
             let rate = order as f64 * per_span;
@@ -187,7 +197,7 @@ impl<V: Abreast> OnGround<V> {
             arc.theta_dot[order] = new_theta_dot;
             turning[order] = product(&arc.theta_dot, cos, order);
             let y_dot = (gamma - at(weight, n)) * per;
-            new_rate.set_footing(under, Footing { y: y_dot, sin: turning[order], taken: 0.0 });
+            new_rate.set_footing(under, Footing { y: y_dot, sin: turning[order], taken: power });
             under.rest_beside(new_rate);
             new_rate.set(place, (beta - at(ground, n)) * per);
             let of = new.footing(under);
