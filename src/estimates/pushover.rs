@@ -208,6 +208,7 @@ mod tests {
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::Load;
     use crate::structure::description::{Damping, Storey};
+    use crate::structure::ground::ContactPoint;
     use crate::structure::natural_quantities::Numbers;
     use crate::{Ground, OneMass, Parameters, State};
     use approx::assert_relative_eq;
@@ -317,22 +318,28 @@ mod tests {
             let about = (0..3).map(|i| w[i] * ((B - displaced[i]) * sin + h[i] * cos)).sum::<f64>();
             assert_relative_eq!(moment, force * about, max_relative = 1e-10);
         }
-        let ground = Ground { f_v: Some(6.0), n_points: Some(5.0), ..Ground::default() };
-        let bedded =
-            structure.with(Parameters { k_t: 0.0, P_0: 0.0, ..structure.parameters() }).unwrap().on(&ground).unwrap();
-        let (points, on_bed) = (&bedded.foundation().unwrap().points, Pushover::new(&bedded).unwrap());
-        for theta in [1e-5, 2e-3, 0.02, 0.2] {
-            let (Equilibrium { u, force, moment, .. }, (sin, cos)) =
-                (on_bed.at_rotation(theta).unwrap(), theta.sin_cos());
-            let displaced = stiffness.try_inverse().unwrap() * (w * force * cos + m * g * sin);
-            assert_relative_eq!(u, displaced[2], max_relative = 1e-10);
-            let carried = |y: f64| points.iter().map(|of| of.k * (of.xi * sin - y).max(0.0)).sum::<f64>() > weight;
-            let y = last_where(-1.0, 1.0, carried);
-            let held: f64 = points.iter().map(|of| of.k * (of.xi * sin - y).max(0.0) * of.xi * cos).sum();
-            let restoring = held - m.dot(&displaced) * g * cos - m.dot(&h) * g * sin;
-            assert_relative_eq!(moment, restoring, max_relative = 1e-8);
-            let about = (0..3).map(|i| w[i] * (h[i] * cos - displaced[i] * sin)).sum::<f64>();
-            assert_relative_eq!(moment, force * about, max_relative = 1e-9);
+        let N = |of: &ContactPoint, sin: f64, y: f64| (of.k * (of.xi * sin - y)).clamp(0.0, of.q);
+        for fs in [None, Some(1.5), Some(3.0)] {
+            let ground = Ground { f_v: Some(6.0), n_points: Some(5.0), fs, ..Ground::default() };
+            let bedded = structure
+                .with(Parameters { k_t: 0.0, P_0: 0.0, ..structure.parameters() })
+                .unwrap()
+                .on(&ground)
+                .unwrap();
+            let (points, on_bed) = (&bedded.foundation().unwrap().points, Pushover::new(&bedded).unwrap());
+            for theta in [1e-5, 2e-3, 0.02, 0.2] {
+                let (Equilibrium { u, force, moment, .. }, (sin, cos)) =
+                    (on_bed.at_rotation(theta).unwrap(), theta.sin_cos());
+                let displaced = stiffness.try_inverse().unwrap() * (w * force * cos + m * g * sin);
+                assert_relative_eq!(u, displaced[2], max_relative = 1e-10);
+                let carried = |y: f64| points.iter().map(|of| N(of, sin, y)).sum::<f64>() > weight;
+                let y = last_where(-1.0, 1.0, carried);
+                let held: f64 = points.iter().map(|of| N(of, sin, y) * of.xi * cos).sum();
+                let restoring = held - m.dot(&displaced) * g * cos - m.dot(&h) * g * sin;
+                assert_relative_eq!(moment, restoring, max_relative = 1e-8);
+                let about = (0..3).map(|i| w[i] * (h[i] * cos - displaced[i] * sin)).sum::<f64>();
+                assert_relative_eq!(moment, force * about, max_relative = 1e-9);
+            }
         }
         let lifts = pushed.at_uplift();
         assert_relative_eq!(lifts.force * w.dot(&h), (weight + P_0) * B, max_relative = 1e-12);

@@ -51,55 +51,37 @@ impl Foundation {
         begun
     }
 
-    /// The force at rest of point `i`, which has settled for good by `s` (m), at y (m) and sin θ, N.
-    fn carries(&self, i: usize, y: f64, sin: f64, s: f64) -> f64 {
-        let ContactPoint { xi, k, q, .. } = self.points[i];
-        (-k * (y - xi * sin + s)).clamp(0.0, q)
-    }
-
-    /// y (m) at which points that have settled for good by `s` (m) carry `structure` at rest at this sin θ.
-    fn height_at(&self, structure: &Structure, sin: f64, s: &dyn Fn(usize) -> f64) -> f64 {
-        let &Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. } = structure.base();
-        let points = 0..self.points.len();
-        let highest = points.clone().map(|i| self.points[i].xi * sin - s(i)).fold(f64::NEG_INFINITY, f64::max);
-        let is_carried = |y: f64| {
-            let carried = points.clone().map(|i| self.carries(i, y, sin, s(i))).sum::<f64>();
-            carried >= m_t * g + (P_0 + k_t * (y - self.y_s)).max(0.0)
-        };
-        let lowest = (0..31).map(|i| highest + self.y_s * f64::from(1 << i)).find(|y| is_carried(*y));
-        last_where(lowest.unwrap_or(f64::NAN), highest, is_carried)
-    }
-
     /// y (m) and sin θ of `structure` at rest on points that have settled for good by `s` (m), the way it goes from their tilt on without
     /// inertia: Σ N = m_t g + P and Σ ξ N = g S_1 tan θ + g² sin θ Σ Γ²/(μ ω²), with N = min(q, k max(0, −e)). None if it falls over.
     pub(crate) fn at_rest(&self, structure: &Structure, s: &dyn Fn(usize) -> f64) -> Option<[f64; 2]> {
         let (weighs, leans) = overturns(structure);
         let turned_back = |sin: f64| {
-            let y = self.height_at(structure, sin, s);
-            let moments = (0..self.points.len()).map(|i| self.points[i].xi * self.carries(i, y, sin, s(i)));
-            moments.sum::<f64>() - (weighs / (1.0 - sin * sin).sqrt() + leans) * sin
+            let y = self.level(sin, structure.base(), s);
+            let moment = |(i, of): (usize, &ContactPoint)| of.xi * of.force(of.xi * sin - y - s(i));
+            self.points.iter().enumerate().map(moment).sum::<f64>() - (weighs / (1.0 - sin * sin).sqrt() + leans) * sin
         };
         let tilted = libm::sin(self.residual(s, 1));
         let way = if turned_back(tilted) < 0.0 { 1.0 } else { -1.0 };
         let leans_on = |by: f64| way * turned_back(tilted + way * by) < 0.0;
         let far = (-30..0).map(|i| libm::exp2(f64::from(i))).find(|by| !leans_on(*by))?;
         let sin = tilted + way * last_where(0.0, far, leans_on);
-        Some([self.height_at(structure, sin, s), sin])
+        Some([self.level(sin, structure.base(), s), sin])
     }
 
     /// The energy (J) above this rest, of y (m) and sin θ on points that have settled by `s` (m), below which no point certainly yields:
     /// half of the least ½ k δ² that presses a point by δ to its capacity, where gravity adds no more than the other half within a rotation
     /// d, and the energy that turns the base by d.
     pub(crate) fn least_yield(&self, structure: &Structure, [y, sin]: [f64; 2], s: &dyn Fn(usize) -> f64) -> f64 {
-        let to_capacity =
-            |(i, point): (usize, &ContactPoint)| (point.q - self.carries(i, y, sin, s(i))).powi(2) / (2.0 * point.k);
+        let to_capacity = |(i, point): (usize, &ContactPoint)| {
+            (point.q - point.force(point.xi * sin - y - s(i))).powi(2) / (2.0 * point.k)
+        };
         let pressed = self.points.iter().enumerate().map(to_capacity).fold(f64::INFINITY, f64::min);
         let (&Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. }, (weighs, leans)) =
             (structure.base(), overturns(structure));
         // 1 − cos θ is at most 0.55 sin² θ up to half a radian
         let turned = (pressed / (1.1 * weighs + leans)).sqrt();
         let raised = |sin: f64| {
-            let y = self.height_at(structure, sin, s);
+            let y = self.level(sin, structure.base(), s);
             let e = y - self.y_s;
             let tendon = if P_0 + k_t * e > 0.0 { e * (P_0 + 0.5 * k_t * e) } else { 0.0 };
             let spring =

@@ -72,3 +72,30 @@ impl Residual {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Ground, Parameters};
+
+    /// A bed of 11 points, rounded by much rocking: the middle carries most of the weight.
+    #[test]
+    fn a_structure_comes_to_rest_on_a_bed_that_rocking_has_rounded() {
+        let parameters = Parameters { m: 450e3, m0: 150e3, J0: 5e5, H: 9.0, B: 3.0, f_fc: 1.5, ..Parameters::MCMANUS };
+        let ground = Ground { f_v: Some(9.0), n_points: Some(11.0), fs: Some(4.0), ..Ground::default() };
+        let structure = Structure::new(parameters).unwrap().on(&ground).unwrap();
+        let under = structure.foundation().unwrap();
+        let place = |i: usize| under.points[i].xi / 3.0;
+        let s = |i: usize| -20.0 * under.y_s * place(i).powi(4) * (1.0 + 0.2 * place(i));
+        let [y, sin] = under.at_rest(&structure, &s).unwrap();
+        let force =
+            |i: usize| (under.points[i].k * (under.points[i].xi * sin - y - s(i))).clamp(0.0, under.points[i].q);
+        let weight = 600e3 * parameters.g;
+        assert!(((0..11).map(force).sum::<f64>() / weight - 1.0).abs() < 1e-12);
+        let moment = (0..11).map(|i| under.points[i].xi * force(i)).sum::<f64>();
+        let tan = sin / (1.0 - sin * sin).sqrt();
+        let omega_fc = std::f64::consts::TAU * parameters.f_fc;
+        let leans = 450e3 * parameters.g * (9.0 * tan + parameters.g / omega_fc.powi(2) * sin);
+        assert!((moment - leans).abs() < 1e-12 * weight * 3.0 && sin > 1e-5, "{y} {sin}");
+    }
+}

@@ -63,6 +63,13 @@ pub struct ContactPoint {
     pub q: f64,
 }
 
+impl ContactPoint {
+    /// The force (N) of the point at rest that is pressed in by `depth` (m).
+    pub(crate) fn force(&self, depth: f64) -> f64 {
+        (self.k * depth).clamp(0.0, self.q)
+    }
+}
+
 /// The contact points under a structure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Foundation {
@@ -479,15 +486,10 @@ impl Foundation {
     pub(crate) fn held_at(&self, sin: f64, base: &Base) -> [f64; 2] {
         let &Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. } = base;
         if self.yields {
-            let force = |point: &ContactPoint, y: f64| (point.k * (point.xi * sin - y)).clamp(0.0, point.q);
-            let carried = |y: f64| self.points.iter().map(|point| force(point, y)).sum::<f64>();
-            let pull = |y: f64| (P_0 + k_t * (y - self.y_s)).max(0.0);
-            let highest = self.points[0].xi.abs() * sin.abs();
-            let lowest = (1..1000).map(|i| highest + f64::from(i) * self.y_s);
-            let lowest = lowest.into_iter().find(|y| carried(*y) >= m_t * g + pull(*y)).unwrap_or(highest);
-            let y = last_where(lowest, highest, |y| carried(y) >= m_t * g + pull(y));
-            let elastic = self.points.iter().filter(|point| point.xi * sin > y && force(point, y) < point.q);
-            let hold = if pull(y) > 0.0 { k_t } else { 0.0 };
+            let y = self.level(sin, base, &|_| 0.0);
+            let is_elastic = |of: &&ContactPoint| (f64::MIN_POSITIVE..of.q).contains(&of.force(of.xi * sin - y));
+            let elastic = self.points.iter().filter(is_elastic);
+            let hold = if P_0 + k_t * (y - self.y_s) > 0.0 { k_t } else { 0.0 };
             let [K_0, K_1] = elastic.fold([hold, 0.0], |[a, b], point| [a + point.k, b + point.k * point.xi]);
             return [y, if K_0 > 0.0 { K_1 / K_0 } else { 0.0 }];
         }
@@ -511,13 +513,27 @@ impl Foundation {
 }
 
 impl Foundation {
+    /// y of a structure that is held at the rotation of this sine on points that have settled by `s` (m): Σ min(q, k max(0, ξ sin θ − s − y))
+    /// = m_t g + max(0, P_0 + k_t (y − y_s)).
+    pub(crate) fn level(&self, sin: f64, base: &Base, s: &dyn Fn(usize) -> f64) -> f64 {
+        let &Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. } = base;
+        let top = |(i, point): (usize, &ContactPoint)| point.xi * sin - s(i);
+        let carries = |y: f64| {
+            let forces = self.points.iter().enumerate().map(|(i, point)| point.force(top((i, point)) - y));
+            forces.sum::<f64>() >= m_t * g + (P_0 + k_t * (y - self.y_s)).max(0.0)
+        };
+        let highest = self.points.iter().enumerate().map(top).fold(f64::NEG_INFINITY, f64::max);
+        let mut lower = (0..64).map(|i| highest + libm::exp2(f64::from(i)) * self.y_s);
+        last_where(lower.find(|y| carries(*y)).unwrap_or(highest), highest, carries)
+    }
+
     /// The moment about its middle by which the ground turns back the `base` of a structure that is held at the rotation of this sine and
     /// cosine: Σ ξ N cos θ, N·m, with N = min(q, k max(0, ξ sin θ − y)) and y of the vertical balance.
     pub(crate) fn restoring(&self, base: &Base, [sin, cos]: [f64; 2]) -> f64 {
         let y = if sin == 0.0 { self.y_s } else { self.held_at(sin, base)[0] };
         // as many points lie on the other side: at rest nothing is left of rounding
         let moment = |point: &ContactPoint| {
-            let depth = |xi: f64| (xi * sin - y).max(0.0).min(point.q / point.k);
+            let depth = |xi: f64| (xi * sin - y).clamp(0.0, point.q / point.k);
             point.k * point.xi * (depth(point.xi) - depth(-point.xi))
         };
         0.5 * self.points.iter().map(moment).sum::<f64>() * cos
