@@ -88,7 +88,8 @@ fn energy_is_kept() {
     }
 }
 
-/// Newmark's block, whose ground is held at A for t_0: it moves by −½ A t_0² (A/μ_c g − 1), and stops at A t_0/μ_c g.
+/// Newmark's block, whose ground is held at A for t_0: it moves by −½ A t_0² (A/μ_c g − 1), and stops at A t_0/μ_c g, but for the vibration of its
+/// mass.
 #[test]
 fn a_block_slides_as_newmark_s() {
     let block = Parameters { H: 1e-3, f_fc: 1e3, J0: 10.0, ..EVISON };
@@ -99,8 +100,10 @@ fn a_block_slides_as_newmark_s() {
     let [pulse, none] = [load(a), load(0.0)];
     let mut events = transitions(&mut engine, t_0, pulse);
     events.extend(transitions(&mut engine, 1.0, none));
-    let (g, x) = (block.g, engine.sample(none).output(Output::x));
-    println!("{x} {} {events:?}", -0.5 * a * t_0 * t_0 * (a / (mu_c * g) - 1.0));
+    let (stops, x) = (a * t_0 / (mu_c * block.g), engine.sample(none).output(Output::x));
+    assert!((x / (-0.5 * a * t_0 * t_0 * (a / (mu_c * block.g) - 1.0)) - 1.0).abs() < 1e-3, "{x}");
+    let [.., last] = events.as_slice() else { panic!("{events:?}") };
+    assert!(last.kind == STICK && (last.time / stops - 1.0).abs() < 1e-3, "{last:?}, not {stops}");
 }
 
 /// A structure that comes to rest on two points that have settled does so where the rest is solved.
