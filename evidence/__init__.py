@@ -19,5 +19,5 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # hosts' solvers have the same la
 PAGES = {  # the folder in docs/ of each
     "accuracy": "evidence", "failures": "explain", "validity": "explain", "paper": "evidence",
     "literature": "evidence", "overturning": "evidence", "restrained": "evidence", "modes": "evidence", "coupling": "evidence",
-    "model_exchange": "evidence", "ground": "evidence",
+    "model_exchange": "evidence", "ground": "evidence", "slipping": "evidence",
 }

@@ -24,7 +24,7 @@ def solve_with(ops, kind: str, *integrator) -> None:
 
 def pier(s: fr.Structure, ground: fr.Ground, axial: float | None) -> None:
     """The pier at rest on the points of `ground` (xi, k, c), whose base node 1 is held horizontally. A point with a dashpot has a gap above spring and
-    dashpot. The mass, node 5, is guided along an axis that turns with the base. With `axial` it stands on an elastic column instead, so many
+    dashpot; a point that yields has none. The mass, node 5, is guided along an axis that turns with the base. With `axial` it stands on an elastic column instead, so many
     times as stiff along its axis as across it, with damping of its initial stiffness."""
     import openseespy.opensees as ops
 
@@ -50,7 +50,11 @@ def pier(s: fr.Structure, ground: fr.Ground, axial: float | None) -> None:
         else:
             ops.equalDOF(1, foot, 1, 2, 3)
         ops.fix(soil, 1, 1, 1)
-        ops.uniaxialMaterial("ENT", foot, GAP * k if c else k)
+        if fs := ground.get("fs"):
+            q = fs * (s.m + s.m0) * s.g * k / sum(ground["k"])
+            ops.uniaxialMaterial("ElasticPPGap", foot, k, -q, 0.0, 0.0, "damage")
+        else:
+            ops.uniaxialMaterial("ENT", foot, GAP * k if c else k)
         if c:
             ops.node(end, xi, 0.0)
             ops.fix(end, 1, 0, 1)
