@@ -110,8 +110,8 @@ def calibrate(
         import pandas
         from scipy import optimize, stats  # type: ignore[import-untyped]
 
-    known: dict[str, Any] = {name: of for name, *of in _native.numbers_of(structure)}
     units = _native.simulate(structure, duration=1e-3, detail=detail).at(0.0).units
+    known: dict[str, Any] = {name: of for name, *of in _native.numbers_of(structure)}
     order = [str(name) for name in traces]
     for what, asked, names in (("traces", order, [*units][1:]), ("fit", [*fit], [*known, *INITIAL])):
         if unknown := [name for name in asked if name not in names] or ([] if asked else ["nothing"]):

@@ -167,11 +167,7 @@ pub fn design(
     };
     let (points, found, unit) = interruptible(py, move |abandoned| -> anyhow::Result<_> {
         let waiting = abandoned.clone();
-        let goes_on = |_, _| {
-            waiting.check();
-            true
-        };
-        let points = thread_pool(threads)?.install(|| design.complete(goes_on))?;
+        let points = thread_pool(threads)?.install(|| design.complete(|_, _| waiting.check()))?;
         Ok((points.clone(), design.found(&points), design.unit()))
     })?;
     let Designed { value, holds, crossings, sentence } = found;

@@ -29,6 +29,9 @@ pub(crate) fn reserves<Q: Coordinates>(foundation: &Foundation, state: &State<Q>
     heights(foundation, state).zip(&foundation.points).map(|([_, push], point)| point.q / point.k - push)
 }
 
+/// Rotations, each half of the one before, within which a structure may stay.
+const TURNS: u32 = 16;
+
 /// Part of its capacity by which a point may miss it and yield all the same.
 const ON_CAPACITY: f64 = 1e-12;
 
@@ -89,8 +92,13 @@ impl Foundation {
             let of_points = self.points.iter().enumerate().map(spring).sum::<f64>();
             of_points + tendon + m_t * g * y + weighs * (1.0 - sin * sin).sqrt() - 0.5 * leans * sin * sin
         };
-        let room = [1.0, -1.0].map(|way| raised((sin + way * turned).clamp(-1.0, 1.0)) - raised(sin));
-        (0.5 * pressed).min(room[0]).min(room[1])
+        let rest = raised(sin);
+        // of a smaller d gravity takes less, and a structure that falls over beyond it may come to rest within it
+        let within = |turned: f64| {
+            let room = [1.0, -1.0].map(|way| raised((sin + way * turned).clamp(-1.0, 1.0)) - rest);
+            (0.5 * pressed).min(room[0]).min(room[1])
+        };
+        (0..TURNS).map(|i| within(turned * libm::exp2(-f64::from(i)))).fold(0.0, f64::max)
     }
 
     /// The points that carry the base in `state`.

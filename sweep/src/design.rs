@@ -95,9 +95,9 @@ pub struct Designed {
 }
 
 impl Design {
-    /// The curve, by rising value. The runs of each pass are done on all threads; after each, `goes_on` is told how many are done, of
-    /// how many so far, and says whether to go on.
-    pub fn complete(&self, goes_on: impl Fn(usize, usize) -> bool + Sync) -> anyhow::Result<Vec<DesignPoint>> {
+    /// The curve, by rising value. The runs of each pass are done on all threads; after each run `tell` hears how many are done,
+    /// and of how many so far.
+    pub fn complete(&self, tell: impl Fn(usize, usize) + Sync) -> anyhow::Result<Vec<DesignPoint>> {
         let &Goal { ref vary, between: [low, high], ref limit, share, count, log, refine } = &self.sought;
         ensure(low < high && high.is_finite() && (low > 0.0 || !log && low.is_finite()), || {
             format!("between = {low:?}, {high:?}: {vary} needs two rising numbers, greater than 0 if log is true")
@@ -112,16 +112,16 @@ impl Design {
         ensure(vary != "g", || "g cannot vary: all runs have one g".into())?;
         ensure(!limit.is_empty(), || "limit is empty: give one or more".into())?;
         check_records(&self.motions)?;
-        let progress = (&goes_on as &(dyn Fn(usize, usize) -> bool + Sync), &AtomicUsize::new(0));
+        let done = AtomicUsize::new(0);
         let inside = self.spaced([low, high], count - 1);
-        let mut points = self.points([vec![low], inside, vec![high]].concat(), progress)?;
+        let mut points = self.points([vec![low], inside, vec![high]].concat(), &done, &tell)?;
         for _ in 0..refine {
             let new = points.windows(2).filter(|pair| pair[0].holds != pair[1].holds);
             let new: Vec<_> = new.flat_map(|pair| self.spaced([pair[0].value, pair[1].value], PARTS)).collect();
             if new.is_empty() {
                 break;
             }
-            points.extend(self.points(new, progress)?);
+            points.extend(self.points(new, &done, &tell)?);
             points.sort_by(|a, b| a.value.total_cmp(&b.value));
         }
         Ok(points)
@@ -141,7 +141,8 @@ impl Design {
     fn points(
         &self,
         values: Vec<f64>,
-        (goes_on, done): (&(dyn Fn(usize, usize) -> bool + Sync), &AtomicUsize),
+        done: &AtomicUsize,
+        tell: &(impl Fn(usize, usize) + Sync),
     ) -> anyhow::Result<Vec<DesignPoint>> {
         let varied = Population::new("design", self.structure.clone()).vary(&self.sought.vary, values.clone())?;
         let plan = Plan::new(vec![varied], self.motions.clone(), self.scales.clone(), self.conditions.clone())?;
@@ -163,7 +164,7 @@ impl Design {
         };
         do_runs(&Vec::from_iter(0..plan.len()), None, run, |(index, outcome): (usize, Outcome)| {
             outcomes[index].set(outcome).expect("each run is done once");
-            anyhow::ensure!(goes_on(done.fetch_add(1, Ordering::Relaxed) + 1, all), "stopped");
+            tell(done.fetch_add(1, Ordering::Relaxed) + 1, all);
             Ok(())
         })?;
         let outcomes: Vec<_> = outcomes.into_iter().filter_map(OnceLock::into_inner).collect();
@@ -273,7 +274,7 @@ mod tests {
     #[test]
     fn the_value_is_that_of_a_brute_sweep() {
         let of_two = design("P_0", [0.0, 2e4], &["theta <= 50 mrad", "a_t <= 1.2 g"], 0.8);
-        let points = of_two.complete(|_, _| true).unwrap();
+        let points = of_two.complete(|_, _| ()).unwrap();
         let is_within = |P_0: f64, NamedRecord { record, .. }: &NamedRecord| {
             let run = Run::new(OneMass::new(Parameters { P_0, ..Parameters::MCMANUS }).unwrap(), record);
             let RunResult { finish, peaks, .. } = run.found(&mut ()).unwrap();
@@ -300,7 +301,7 @@ mod tests {
     fn all_crossings_of_a_demand_that_is_not_monotone_are_said() {
         let all = design("B", [0.1, 0.4], &["stands"], 1.0);
         let one = Design { motions: vec![all.motions[3].clone()], sought: Goal { refine: 3, ..all.sought }, ..all };
-        let points = one.complete(|_, _| true).unwrap();
+        let points = one.complete(|_, _| ()).unwrap();
         let Designed { value, holds, crossings, sentence } = one.found(&points);
         assert_eq!((value, holds.len(), crossings.len()), (None, 2, 2), "{sentence}");
         assert!(sentence.ends_with(", 2 crossings: the demand is not monotone"), "{sentence}");
@@ -316,14 +317,14 @@ mod tests {
     #[test]
     fn what_no_value_reaches_is_said_and_what_has_no_meaning_is_refused() {
         let far = design("P_0", [0.0, 1e4], &["theta <= 1e-9"], 1.0);
-        let points = far.complete(|_, _| true).unwrap();
+        let points = far.complete(|_, _| ()).unwrap();
         let Designed { value, holds, sentence, .. } = far.found(&points);
         assert_eq!((value, holds.len(), points.len()), (None, 0, 9));
         let expected =
             "theta <= 1e-9 in 100 % of the runs: at no P_0 from 0 N to 10000 N; at most in 80 % of the runs, at 5000 N";
         assert_eq!(sentence, expected);
         let with = |sought| Design { sought, ..far.clone() };
-        let refused = |of: Design| of.complete(|_, _| true).unwrap_err().to_string();
+        let refused = |of: Design| of.complete(|_, _| ()).unwrap_err().to_string();
         for (of, starts) in [
             (with(Goal { share: 84.0, ..far.sought.clone() }), "share = 84.0 is out of range"),
             (

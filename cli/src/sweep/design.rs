@@ -46,7 +46,6 @@ pub fn run(args: &DesignArgs) -> anyhow::Result<()> {
         design.complete(|done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
-            true
         })
     })?;
     bar.finish_and_clear();
