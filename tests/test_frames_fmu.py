@@ -267,7 +267,7 @@ KINDS = {
     "tied": (MCMANUS, ties_of(MCMANUS, 0.1), 1.4, 0, "f_v = 40\nzeta_v = 0.2"),
     "one mass that slides": (MCMANUS, Ties(), 0.7, 0, "f_v = 40\nzeta_v = 0.2\nmu_c = 0.2"),
     "one mass that settles": (MCMANUS, Ties(), 0.7, 0, "f_v = 40\nzeta_v = 0\nfs = 3"),
-    "one mass that slides and settles": (MCMANUS, Ties(), 0.7, 0, BOTH),
+    "one mass that slides and settles": (MCMANUS, Ties(), 0.8, 0, BOTH),
     "storeys that slide": (FRAME, Ties(), 2, 2, "f_v = 12\nzeta_v = 0.1\nmu_c = 0.3"),
     "thrown up": (MCMANUS, Ties(), 0, 8, "f_v = 20\nzeta_v = 0.2"),
     "storeys": (FRAME, Ties(), 1.6, 0, "f_v = 12\nzeta_v = 0.1"),
