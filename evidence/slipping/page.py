@@ -123,7 +123,7 @@ def friction() -> dict:
         moves, slender = change.abs() > CHANGED, of["tangent"] > mu_c
         needs = of["needed"] > mu_c
         lines.append([f"{mu_c:g}", len(of), (of[f"x {mu_c:g}"].abs() > 0.01).sum(), moves.sum(), (change < -CHANGED).sum(), needs.sum(), (moves & needs).sum(),
-                      slender.sum(), (moves & slender).sum(), (endings == "overturned").sum()[0], (endings == "overturned").sum()[1]])
+                      slender.sum(), (moves & slender).sum(), *(endings == "overturned").sum()])
         told |= {f"moved_{10 * mu_c:g}": moves.sum(), f"stand_{10 * mu_c:g}": len(of), f"needs_{10 * mu_c:g}": needs.sum(), f"fall_{10 * mu_c:g}": (change < -CHANGED).sum()}
     headings = ["μ_c", "stand", "slide by 1 cm", "θ_max moves", "and falls", "mu_required > μ_c", "of these move", "tan α_cg > μ_c", "of these move",
                 "overturn held", "overturn"]
@@ -137,6 +137,8 @@ def yielding(figures: Path) -> dict:
     piers = {f"fs = {fs}" if fs else "elastic": PIER.replace(ground=fr.Ground(**SOIL, **({"fs": fs} if fs else {}))) for fs in RESERVES}
     at_1 = {name: of.scaled(1 / of.pgv) for name, of in records.items()}
     runs = fr.sweep(piers, at_1, scale=np.geomspace(0.15, 3, 14), intensity="PGV")
+    no_rest = runs["settlement_res[m]"].isna() & (runs["structures"] != "elastic") & (runs["ending"] != "overturned")
+    runs.loc[no_rest, ["settlement_res[m]", "theta_res[rad]"]] = 1.0  # beyond any limit
     figure, axes = subplots(1, 3, 3.2, sharey=True)
     lines, intensities = [], np.linspace(0.05, 3, 200)
     for axis, (name, limit) in zip(axes, LIMITS.items()):
@@ -151,7 +153,8 @@ def yielding(figures: Path) -> dict:
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     save(figure, figures / "fragility.svg", "Fragility by static reserve", "Probabilities of rotation, settlement and tilt over PGV")
     fallen = runs[runs["ending"] == "overturned"].groupby("structures").size()
-    return dict(fragility=table(["limit", *piers], lines), fallen=", ".join(f"{of}: {fallen.get(of, 0)}" for of in piers), runs=len(runs) // len(piers))
+    return dict(fragility=table(["limit", *piers], lines), fallen=", ".join(f"{of}: {fallen.get(of, 0)}" for of in piers), runs=len(runs) // len(piers),
+                no_rest=no_rest.sum())
 
 
 def values(figures: Path) -> dict:
