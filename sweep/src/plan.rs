@@ -667,12 +667,8 @@ mod tests {
         for not_of_pier in [2, 3] {
             assert_eq!(pier.fragilities[not_of_pier].curve, Err(Refused::by("no run is counted")));
         }
-        for (name, refused) in [
-            ("S_a[4](1 s)", "S_a[4](1 s): no structure has a floor 4"),
-            ("S_a(1 s)", "contents = \"S_a(1 s)\": S_a[FLOOR]"),
-        ] {
-            assert!(plan.clone().with_contents(&[name.into()]).unwrap_err().to_string().starts_with(refused));
-        }
+        let refused = plan.clone().with_contents(&["S_a[4](1 s)".into()]).unwrap_err().to_string();
+        assert_eq!(refused, "S_a[4](1 s): no structure has a floor 4");
     }
 
     #[test]
