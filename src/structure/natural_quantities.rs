@@ -66,7 +66,7 @@ pub struct Numbers {
 enum InputEntry {
     Number(f64),
     Units(Units),
-    Ground(Ground),
+    Ground(Box<Ground>),
 }
 
 impl<'de> Deserialize<'de> for InputEntry {
@@ -99,7 +99,7 @@ impl<'de> Visitor<'de> for OfEntry {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<InputEntry, A::Error> {
-        Ground::deserialize(MapAccessDeserializer::new(map)).map(InputEntry::Ground)
+        Ground::deserialize(MapAccessDeserializer::new(map)).map(|ground| InputEntry::Ground(Box::new(ground)))
     }
 }
 
@@ -356,7 +356,7 @@ impl TryFrom<BTreeMap<String, InputEntry>> for Numbers {
                 }
                 InputEntry::Number(number) => given.give(&name, number)?,
                 InputEntry::Units(of_numbers) if name == "units" => units = of_numbers,
-                InputEntry::Ground(ground) if name == "ground" => given.ground = Some(ground),
+                InputEntry::Ground(ground) if name == "ground" => given.ground = Some(*ground),
                 InputEntry::Ground(_) if !names().chain(["units"]).any(|known| known == name) => {
                     return Err(is_unknown(&name));
                 }
