@@ -12,7 +12,7 @@ from ..figures import COLOURS, save, subplots
 from ..ground.opensees import shaken
 from ..ground.page import F_V, MCMANUS, bed, record, signed
 from ..page import table
-from ..scenes import G, RECORDS, horizontal_records
+from ..scenes import RECORDS, G, horizontal_records
 from ..study import scientific
 
 FRICTION = [0.3, 0.5, 0.8]
