@@ -16,7 +16,7 @@ use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
 use serde::Deserialize;
-use serde::de::value::{Error, StrDeserializer};
+use serde::de::value::{Error, MapDeserializer, StrDeserializer};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -41,11 +41,12 @@ pub const NUMBERS: [FieldRow; 13] = [
 ];
 
 /// The numbers of ground that gives, as [`Ground`] has them; without all of them the ground is rigid.
-pub const OF_GROUND: [FieldRow; 6] = [
+pub const OF_GROUND: [FieldRow; 7] = [
     ("f_v", "Hz", "frequency of the bounce on the ground", 10.0, [0.5, 200.0]),
     ("k_v", "N/m", "vertical stiffness of the ground (Winkler springs)", f64::NAN, [1e6, 1e12]),
     ("zeta_v", "1", "damping ratio of the bounce", 0.2, [0.0, 1.0]),
     ("n_points", "1", "contact points from edge to edge", 2.0, [2.0, 21.0]),
+    ("kr_ratio", "1", "rotational stiffness of more than two points over k_v B^2", f64::NAN, [0.2, 1.0]),
     ("mu_c", "1", "coefficient of friction of a base that may slide", f64::NAN, [0.0, 2.0]),
     ("fs", "1", "capacity of the ground over its load at rest", f64::NAN, [1.05, 20.0]),
 ];
@@ -186,10 +187,10 @@ impl Fields {
 
     /// Ground that gives; none if it is rigid.
     fn ground(&self) -> Result<Option<Ground>, String> {
-        let [f_v, k_v, zeta_v, n_points, mu_c, fs] = OF_GROUND.map(|number| self.given(number.0).transpose());
-        let [f_v, k_v, zeta_v, n_points, mu_c, fs] = [f_v?, k_v?, zeta_v?, n_points?, mu_c?, fs?];
-        let ground = Ground { f_v, k_v, zeta_v, n_points, mu_c, fs, ..Ground::default() };
-        Ok((ground != Ground::default()).then_some(ground))
+        let given = OF_GROUND.iter().filter_map(|of| Some(self.given(of.0)?.map(|value| (of.0, value))));
+        let given = given.collect::<Result<Vec<_>, _>>()?;
+        let ground = Ground::deserialize(MapDeserializer::<_, Error>::new(given.iter().copied())).map_err(says)?;
+        Ok((!given.is_empty()).then_some(ground))
     }
 
     /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.

@@ -223,7 +223,7 @@ def numbers(tables: dict, ending: str = ""):
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")  # of r on ground that gives
-@pytest.mark.parametrize("ground", [None, fr.Ground(k_v=4e5, zeta_v=0.1, n_points=3, kr_ratio=0.5)])
+@pytest.mark.parametrize("ground", [None, fr.Ground(k_v=4e5, zeta_v=0.1, n_points=3, kr_ratio=0.5, mu_c=0.4, fs=3.0)])
 @pytest.mark.parametrize("storeys", [None, [dict(m=60, h=1.0, k=5e4), dict(m=50, h=1.9, k=4e4)]])
 def test_each_parameter_is_at_every_door(opened, exporter, tmp_path, storeys, ground):
     """The rows of the library's table, of which a specimen has all, each with its value: keywords, file, template, help, rows of a sweep, FMU
@@ -252,7 +252,7 @@ def test_each_parameter_is_at_every_door(opened, exporter, tmp_path, storeys, gr
         assert {name: float(fmu.variables[name].start) for name in named} == named
         assert {fmu.variables[name].causality for name in named} == {"parameter"}
     page = opened(dict(preset="mcmanus") | (FRAME if storeys else {}) | (dict(k_v="4e5", n_points="3") if ground else {}))
-    for name in named.keys() - {"kr_ratio"}:  # which the page leaves at its default
+    for name in named:
         symbol, _, number = name.partition("[")
         field = f"storey {number[:-1]}: {symbol}" if number else name
         assert page.locator(f"#controls [name='{field}']").count() == 1, name
