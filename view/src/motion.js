@@ -332,7 +332,7 @@ function motionView() {
     Feet: (v, h) => [...v, 0].map((x, i) => [x, h[i]]),
   };
   const profiles = () => Object.entries(overHeight).flatMap(([place, points]) =>
-    shownIn(place).map((of) => ({ ...of, points, title: `${of.label} (${of.unit})` })));
+    shownIn(place).map((of) => ({ ...of, points, title: `${of.label.replace("storey ", "")} (${of.unit})` })));
 
   /** The choice of a floor, and the table of peaks, from the top down. */
   function layOutFloors() {

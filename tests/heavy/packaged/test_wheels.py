@@ -38,8 +38,8 @@ def test_there_are_no_others():
 
 def test_files(wheel):
     machine, content = wheel
-    module = {f"flexible_rocking/{name}" for name in ("__init__.py", "_ground.py", "_native.pyi", "_results.py", "_sweep.py", "formats.py", "py.typed",
-                                                      MODULES[machine])}
+    texts = {path.name for path in (ROOT / "python" / "flexible_rocking").iterdir() if path.suffix in (".py", ".pyi", ".typed")}
+    module = {f"flexible_rocking/{name}" for name in texts | {MODULES[machine]}}
     own = module | {f"{NAME}.data/data/share/flexible-rocking/FlexibleRocking.fmu", f"{NAME}.data/scripts/{PROGRAMS[machine]}"}
     about = {f"{NAME}.dist-info/{file}" for file in ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE-MIT", "licenses/LICENSE-APACHE")}
     assert set(content.namelist()) == own | about
