@@ -12,6 +12,7 @@
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
 pub(crate) mod contacts;
+pub(crate) mod friction;
 pub(crate) mod guard;
 #[cfg(feature = "lanes")]
 pub(crate) mod lanes;

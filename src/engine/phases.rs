@@ -3,7 +3,8 @@
 //! The loop of the [engine](crate::engine) expands the motion, finds the first guard that closes, and applies the guard's transition.
 //! A new kind of contact is one more [`Rules`] here, with its guards.
 
-use crate::engine::contacts::{self, Points, Sliding, Tied};
+use crate::engine::contacts::{self, Points, Tied};
+use crate::engine::friction::Sliding;
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
