@@ -12,6 +12,7 @@ use crate::engine::step::{Branch, Step, see};
 use crate::engine::transition::TransitionKind;
 use crate::engine::yielding::{product_integral, square_integral};
 use crate::levels::level::Level;
+use crate::levels::on_ground::Pushes;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::{margins, reserves};
 use crate::mechanics::lateral::Coordinates;
@@ -264,6 +265,7 @@ fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = 
 pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
     let &Step { level, contact, start, arc, reach, .. } = step;
     let (ground, mut moved) = (level.structure().ground(), *start.dissipators);
+    let end = || Q::evaluate(arc.used(&arc.u), reach);
     if level.structure().base().is_restrained() {
         moved = stretched(step);
     }
@@ -271,11 +273,11 @@ pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
         let rate: Series = std::array::from_fn(|k| arc.u_dot[k].of(place));
         let normal = normal(ground, contact, &start.state, arc);
         let rubbed = product_integral(arc.used(&normal), arc.used(&rate), reach) * arc.span;
-        moved.slip += side.sign() * (Q::evaluate(arc.used(&arc.u), reach).of(place) - arc.u[0].of(place));
+        moved.slip += side.sign() * (end().of(place) - arc.u[0].of(place));
         moved.friction += side.sign() * mu_c * rubbed;
     }
     if contact.yields != 0 {
-        let end = Q::evaluate(arc.used(&arc.u), reach);
+        let end = end();
         for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
             moved.settling += point.q * (end.settlement(ground, i) - arc.u[0].settlement(ground, i));
         }
@@ -297,22 +299,9 @@ pub(super) fn normal<Q: Coordinates>(
     state: &State<Q>,
     arc: &Arc<Q>,
 ) -> Series {
-    let (mut k, mut c, mut push) = ([0.0; 2], [0.0; 2], 0.0);
-    for (i, &ContactPoint { xi, k: stiffness, c: damping, q }) in ground.points.iter().enumerate() {
-        match () {
-            () if !contact.is_pressed(i) => (),
-            () if contact.yields(i) => push += q,
-            () => {
-                (k, c) = ([k[0] + stiffness, k[1] + stiffness * xi], [c[0] + damping, c[1] + damping * xi]);
-                push -= stiffness * state.u.settlement(ground, i);
-            }
-        }
+    let (points, mut normal) = (Pushes::of(ground, contact, state), ZERO);
+    for (k, of) in normal.iter_mut().enumerate().take(arc.order + 1) {
+        [*of, _] = points.forces([&arc.u[k], &arc.u_dot[k]].map(|of| of.footing(ground)), k);
     }
-    let mut normal = ZERO;
-    for (of, (u, u_dot)) in normal.iter_mut().zip(arc.used(&arc.u).iter().zip(&arc.u_dot)) {
-        let [of_u, rate] = [u, u_dot].map(|of| of.footing(ground));
-        *of = k[1] * of_u.sin - k[0] * of_u.y + c[1] * rate.sin - c[0] * rate.y;
-    }
-    normal[0] += push;
     normal
 }

@@ -55,7 +55,8 @@ pub(crate) struct OnGround<V: Abreast> {
 }
 
 /// The forces of the pressed points and of ties on the base as functions of its motion.
-pub(super) struct Pushes {
+#[derive(Clone, Copy)]
+pub(crate) struct Pushes {
     /// Σ N and Σ ξ N at y = sin θ = 0 and at rest.
     pub push: [f64; 2],
     /// N and Σ ξ N by y, sin θ, ẏ and θ̇ cos θ.
@@ -70,7 +71,7 @@ pub(super) struct Pushes {
 
 impl Pushes {
     /// Of the points of `ground` in this `contact`, which have settled as in `state`.
-    pub fn of(ground: &Foundation, contact: PressedPoints, state: &State<Modes>) -> Pushes {
+    pub fn of<Q: Coordinates>(ground: &Foundation, contact: PressedPoints, state: &State<Q>) -> Pushes {
         // Σ N = push − k y + k ξ sin θ − c ẏ + c ξ θ̇ cos θ, and Σ ξ N
         let (mut k, mut c, mut push) = ([0.0; 3], [0.0; 3], [0.0; 2]);
         for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i)) {
@@ -87,6 +88,14 @@ impl Pushes {
         }
         let lever = if c[0] > 0.0 { c[1] / c[0] } else { 0.0 };
         Pushes { push, by: forces_by(k, c), taken: c[0], lever, left_for_turning: c[2] - lever * c[1], k, c }
+    }
+
+    /// Coefficient `k` of N and Σ ξ N, from this coefficient of the footing and of its rates.
+    #[inline]
+    pub fn forces(&self, [of, rates]: [Footing; 2], k: usize) -> [f64; 2] {
+        let push = if k == 0 { self.push } else { [0.0; 2] };
+        let motion = [of.y, of.sin, rates.y, rates.sin];
+        self.by.iter().zip(motion).fold(f64x2::new(push), |sum, (by, of)| sum + *by * of).to_array()
     }
 
     /// These with the ties of `subject`.

@@ -95,10 +95,8 @@ impl<V: Abreast> OnGround<V> {
         let (under, modes) = (structure.ground(), structure.modes());
         let nu = contact.friction.sign() * under.mu_c.unwrap_or(0.0);
         let span = start.interval.min(self.longest_slide).min(under.longest_yielding(contact));
-        let points = Pushes::of(under, contact, state);
-        let (carried, free) = (points.push, free_mass(structure.base(), modes));
-        let by_points = points.by;
-        let points = points.with_ties(&self.subject, start, contact);
+        let (carried, free) = (Pushes::of(under, contact, state), free_mass(structure.base(), modes));
+        let points = carried.with_ties(&self.subject, start, contact);
         let ramp = |value: f64, slope: f64| [value, slope * span];
         let (ground, weight) = (ramp(a_g.value, a_g.slope), ramp(g + a_v.value, a_v.slope));
         // of forces on floors: over the mass of each mode, and on mass that no mode carries
@@ -135,14 +133,9 @@ impl<V: Abreast> OnGround<V> {
             let (u, u_dot, theta_dot) = (&arc.u, &arc.u_dot, &arc.theta_dot);
             let at = |ramp: [f64; 2], k: usize| ramp.get(k).copied().unwrap_or(0.0);
             let times = |ramp: [f64; 2], of: &Series| ramp[0] * of[n] + if n > 0 { ramp[1] * of[n - 1] } else { 0.0 };
-            let forces = |push: [f64; 2], by: [wide::f64x2; 4]| {
-                let (of, rates) = (u[n].footing(under), u_dot[n].footing(under));
-                let push = if n == 0 { push } else { [0.0; 2] };
-                let motion = [of.y, of.sin, rates.y, rates.sin];
-                by.iter().zip(motion).fold(wide::f64x2::new(push), |sum, (by, of)| sum + *by * of).to_array()
-            };
-            [N[n], M[n]] = forces(points.push, points.by);
-            [normal[n], _] = forces(carried, by_points);
+            let footing = [&u[n], &u_dot[n]].map(|of| of.footing(under));
+            [N[n], M[n]] = points.forces(footing, n);
+            [normal[n], _] = carried.forces(footing, n);
             square[n] = product(theta_dot, theta_dot, n);
             (sin[order], cos[order]) = (turning[n] * per, -product(theta_dot, sin, n) * per);
             mu[order] = mu_at(&u[order]);

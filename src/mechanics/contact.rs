@@ -5,7 +5,7 @@ use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{self, Dissipators, Tie, places};
 use crate::series::bisection::last_where;
-use crate::structure::ground::{ContactPoint, FOOTING, Footing};
+use crate::structure::ground::{ContactPoint, FOOTING, Footing, overturns};
 use crate::structure::mode::Modes;
 use crate::{Base, Foundation, Friction, Load, Phase, PressedPoints, Side, State, Structure, Ties};
 
@@ -57,7 +57,7 @@ impl Foundation {
     /// y (m) and sin θ of `structure` at rest on points that have settled for good by `s` (m), the way it goes from their tilt on without
     /// inertia: Σ N = m_t g + P and Σ ξ N = g S_1 tan θ + g² sin θ Σ Γ²/(μ ω²), with N = min(q, k max(0, −e)). None if it falls over.
     pub(crate) fn at_rest(&self, structure: &Structure, s: &dyn Fn(usize) -> f64) -> Option<[f64; 2]> {
-        let (weighs, leans) = overturns(structure);
+        let (weighs, leans) = overturns(structure.base(), structure.body(), structure.modes());
         let turned_back = |sin: f64| {
             let y = self.level(sin, structure.base(), s);
             let moment = |(i, of): (usize, &ContactPoint)| of.xi * of.force(of.xi * sin - y - s(i));
@@ -80,7 +80,7 @@ impl Foundation {
         };
         let pressed = self.points.iter().enumerate().map(to_capacity).fold(f64::INFINITY, f64::min);
         let (&Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. }, (weighs, leans)) =
-            (structure.base(), overturns(structure));
+            (structure.base(), overturns(structure.base(), structure.body(), structure.modes()));
         // 1 − cos θ is at most 0.55 sin² θ up to half a radian
         let turned = (pressed / (1.1 * weighs + leans)).sqrt();
         let raised = |sin: f64| {
@@ -131,12 +131,6 @@ impl Foundation {
         let moved = Dissipators::NEW.moved_to(base, |j| y - self.y_s - places(base)[j] * sin);
         Dissipators { hysteretic: 0.0, ..moved }
     }
-}
-
-/// g S_1 and Σ (g Γ)²/(μ ω²): by which the weight of a structure turns its base over, per sine of the rotation, N·m.
-fn overturns(structure: &Structure) -> (f64, f64) {
-    let (g, modes) = (structure.base().g, structure.modes());
-    (g * structure.body().S_1, modes.iter().map(|mode| (g * mode.gamma).powi(2) / mode.stiffness).sum())
 }
 
 /// Energy on ground that gives with these points pressed, J, zero at height zero of the unloaded ground (F8):

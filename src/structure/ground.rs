@@ -550,8 +550,14 @@ pub(crate) fn free_mass(base: &Base, modes: &[Mode]) -> f64 {
     base.m_t - modes.iter().map(|mode| mode.gamma * mode.share).sum::<f64>()
 }
 
+/// g S_1 and Σ (g Γ)²/(μ ω²): by which the weight of a structure turns its base over, per sine of the rotation, N·m.
+pub(crate) fn overturns(base: &Base, body: &Body, modes: &[Mode]) -> (f64, f64) {
+    let leaning = |mode: &Mode| (base.g * mode.gamma).powi(2) / mode.stiffness;
+    (base.g * body.S_1, modes.iter().map(leaning).sum())
+}
+
 /// The rotational stiffness of the ground at which a structure at rest falls over, g S_1 + Σ (g Γ)²/(μ ω²), N·m/rad.
 fn least_stiffness(base: &Base, body: &Body, modes: &[Mode]) -> f64 {
-    let leaning = |mode: &Mode| (base.g * mode.gamma).powi(2) / mode.stiffness;
-    base.g * body.S_1 + modes.iter().map(leaning).sum::<f64>()
+    let (weighs, leans) = overturns(base, body, modes);
+    weighs + leans
 }
