@@ -16,7 +16,7 @@ use rocking_sweep::plan::Conditions;
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
 use serde::Deserialize;
-use serde::de::value::{Error, MapDeserializer, StrDeserializer};
+use serde::de::value::{Error, StrDeserializer};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -187,10 +187,9 @@ impl Fields {
 
     /// Ground that gives; none if it is rigid.
     fn ground(&self) -> Result<Option<Ground>, String> {
-        let given = OF_GROUND.iter().filter_map(|of| Some(self.given(of.0)?.map(|value| (of.0, value))));
-        let given = given.collect::<Result<Vec<_>, _>>()?;
-        let ground = Ground::deserialize(MapDeserializer::<_, Error>::new(given.iter().copied())).map_err(says)?;
-        Ok((!given.is_empty()).then_some(ground))
+        let given = OF_GROUND.iter().filter_map(|of| Some(self.given(of.0)?.map(|value| (of.0.to_owned(), value.into()))));
+        let given = given.collect::<Result<toml::Table, _>>()?;
+        (!given.is_empty()).then(|| given.try_into().map_err(says)).transpose()
     }
 
     /// The structure: storeys on a base, a specimen with the given numbers in place of its own, or these numbers alone.
