@@ -99,10 +99,7 @@ impl Detail {
                 "detail = {name} moves structures of one mass alone: choose auto, nonlinear, linear, rigid or fixed_base"
             )
         })?;
-        let structure = match self {
-            Detail::Rigid => structure.with_lowest(0),
-            _ => structure.at(self),
-        };
+        let structure = structure.moved_at(self);
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = LevelSubject { structure, local_error, is_tied, angles: self.angles() };
         match self {

@@ -20,6 +20,8 @@ from reference import EVISON, MCMANUS, Structure
 LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
 VALIDITY = ("tension_max", "R_v_min", "mu_required", "mu_impact", "tension_impact", "energy_gain_max", "weight_min")
 TIES = {"P_t", "F_d1", "F_d2"}  # the FMU of one mass has their peaks in any case
+#: Kinds of transitions by the words of an FMU.
+TOLD = {"contact point": "ground", "the base sticks": "stick", "the base slides": "slip", "the base leaves": "flight"}
 GROUNDS = ("AT2", "CSV", "arrays", "arrays with a_v", "free")
 SCENES = range(40)  # the last 15 in tests/heavy
 
@@ -171,9 +173,9 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     said = [message.text for message in messages]
     end = last["t_overturned"] if last["phase"] == PHASES["overturned"] else last["time"]
     found = {name if name in VALIDITY else re.sub(r"_max(?=\[|$)", "", name): (last[name], last[f"t_{name}"]) for name in peaks}
-    kinds = "uplift|impact|landing|overturning|yielding|unloading"
+    kinds = "|".join(["uplift", "impact", "landing", "overturning", "yielding", "unloading", "release", "touch", "tendon", *TOLD])
     transitions = [(text, re.match(rf"t = (\S+) s: ({kinds})", text)) for text in said]
-    transitions = [(float(of[1]), "settling" if "contact is held" in text else of[2]) for text, of in transitions if of]
+    transitions = [(float(of[1]), "settling" if "contact is held" in text else TOLD.get(of[2], of[2])) for text, of in transitions if of]
     fall = [float(of[1]) for text in said if (of := re.search(r"its fall began at t = (\S+) s", text))]
     counted = dict(transitions=last["transitions"], end=end, fall=fall[0] if fall else None)
     return found | numbered(transitions) | at_end(end, counted)

@@ -128,8 +128,8 @@ impl<Q: Runs> Scene<Q> {
         let mut passed: Vec<Transition<Q>> = Vec::new();
         let Checked { motion, was_hidden, .. } =
             self.check(setup, &outside.known, outside.arrived, &mut |transition| passed.push(*transition))?;
-        let (host, is_one_mass) = (*self.engine.motion(), self.is_one_mass());
-        passed.iter().for_each(|transition| log(logger, is_one_mass, transition));
+        let (host, shows_u) = (*self.engine.motion(), self.shows_u());
+        passed.iter().for_each(|transition| log(logger, shows_u, transition));
         if was_hidden {
             logger.event(|| {
                 format!(
@@ -141,7 +141,7 @@ impl<Q: Runs> Scene<Q> {
         }
         self.engine.set_motion(motion);
         let acting = self.acting(setup, load);
-        let told: &mut Tell<Q> = &mut |transition| log(logger, is_one_mass, transition);
+        let told: &mut Tell<Q> = &mut |transition| log(logger, shows_u, transition);
         self.engine.transit_at_once(acting, &mut &mut *told);
         let motion = *self.engine.motion();
         let known = Checkpoint { motion, elapsed: self.elapsed, load };

@@ -16,13 +16,13 @@ pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
 }
 
 /// An event; where contact is held by force, which is not the model's, a warning.
-pub(crate) fn log<Q: Runs>(logger: &Logger, is_one_mass: bool, transition: &Transition<Q>) {
+pub(crate) fn log<Q: Runs>(logger: &Logger, shows_u: bool, transition: &Transition<Q>) {
     match transition.kind {
         TransitionKind::Settling => logger.warning(&format!(
             "{}; too many transitions within one vibration period: contact is held for the rest of it",
-            describe(is_one_mass, transition)
+            describe(shows_u, transition)
         )),
-        _ => logger.event(|| describe(is_one_mass, transition)),
+        _ => logger.event(|| describe(shows_u, transition)),
     }
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn warn_of_stairs(logger: &Logger, time: f64) {
     ));
 }
 
-fn describe<Q: Runs>(is_one_mass: bool, transition: &Transition<Q>) -> String {
+fn describe<Q: Runs>(shows_u: bool, transition: &Transition<Q>) -> String {
     let Transition { time, kind, before, after } = transition;
     let side = |side| if side == Side::Left { "left" } else { "right" };
     let what = match *kind {
@@ -57,7 +57,7 @@ fn describe<Q: Runs>(is_one_mass: bool, transition: &Transition<Q>) -> String {
         TransitionKind::Friction(Friction::Free) => "the base leaves the ground".to_owned(),
         kind => kind.name().to_owned(),
     };
-    let of_one = is_one_mass.then(|| {
+    let of_one = shows_u.then(|| {
         let [u, u_dot, u_dot_before] = [after.u, after.u_dot, before.u_dot].map(|of| of.of(0));
         format!("u = {u} m, u_dot = {u_dot} m/s (before: {u_dot_before}), ")
     });

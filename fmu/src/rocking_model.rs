@@ -308,8 +308,8 @@ impl<Q: Runs> Model for RockingModel<Q> {
             scene.set(|settings| settings.stops = stops)?;
         }
         let known = setup.validity.then_some(scene.validity);
-        let is_one_mass = scene.is_one_mass();
-        let told: &mut Tell<Q> = &mut |transition| log(logger, is_one_mass, transition);
+        let shows_u = scene.shows_u();
+        let told: &mut Tell<Q> = &mut |transition| log(logger, shows_u, transition);
         let result = if stops {
             scene.advance_to_transition(setup, step, &load, told)
         } else {
@@ -345,8 +345,8 @@ impl<Q: Runs> Model for RockingModel<Q> {
         }
         let known = setup.validity.then_some(scene.validity);
         let load = inputs.values(scene.engine.structure());
-        let is_one_mass = scene.is_one_mass();
-        scene.transit(setup, load, &mut |transition| log(logger, is_one_mass, transition));
+        let shows_u = scene.shows_u();
+        scene.transit(setup, load, &mut |transition| log(logger, shows_u, transition));
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
         Ok(Update::default())
     }

@@ -137,9 +137,10 @@ impl<Q: Runs> Scene<Q> {
         Ok(())
     }
 
-    /// Whether the structure has the names of one mass.
-    pub fn is_one_mass(&self) -> bool {
-        self.engine.structure().is_one_mass()
+    /// Whether messages show u: that of one mass which has a mode.
+    pub fn shows_u(&self) -> bool {
+        let structure = self.engine.structure();
+        structure.is_one_mass() && !structure.modes().is_empty()
     }
 
     /// The numbers that follow from those of the structure.

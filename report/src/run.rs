@@ -319,10 +319,11 @@ fn found<Q: Runs>(run: &Run<Q>, limits: Option<Limits>, watch: &mut dyn Watch<Q>
         Some(validity) => run.judged(validity, &mut (watch, &mut see))?,
         None => run.found(&mut (watch, &mut see))?,
     };
-    Ok(RunReport { findings: validity.map(|of| *of.found()), ..results(&run.structure, &found, &transitions) })
+    Ok(RunReport { findings: validity.map(|of| *of.found()), ..results(run, &found, &transitions) })
 }
 
-fn results<Q: Runs>(structure: &Structure, found: &fall::RunResult<Q>, transitions: &[Transition<Q>]) -> RunReport {
+fn results<Q: Runs>(run: &Run<Q>, found: &fall::RunResult<Q>, transitions: &[Transition<Q>]) -> RunReport {
+    let structure = &run.structure.moved_at(run.detail);
     let &fall::RunResult { ground, ref peaks, fall, start, finish: Finish { ending, ref motion } } = found;
     let floors = |of: &Q| Vec::from_iter(structure.floors().iter().map(|floor| floor.displacement(of)));
     let state = |of: &State<Q>| [floors(&of.u), floors(&of.u_dot), vec![of.theta, of.theta_dot]].concat();
@@ -362,5 +363,5 @@ fn curve<Q: Runs>(run: &Run<Q>, part: f64) -> Result<MotionCurve, RunError> {
         columns.push((output.name(&run.structure), points.iter().map(|at| at.outputs[i]).collect()));
     }
     let (times, phases) = points.iter().map(|at| (at.time, at.phase)).unzip();
-    Ok(MotionCurve { found: results(&run.structure, &found, &transitions), times, phases, columns })
+    Ok(MotionCurve { found: results(run, &found, &transitions), times, phases, columns })
 }

@@ -57,8 +57,13 @@ impl Detail {
 }
 
 impl Structure {
-    /// This structure as the level `detail` moves it: a fixed base stands on no ground that gives, and has no outputs of such ground.
+    /// This structure as the level `detail` shows it: a fixed base stands on no ground that gives, and has no outputs of such ground.
     pub fn at(&self, detail: Detail) -> Structure {
         if detail.has_uplift() { self.clone() } else { self.on_rigid_ground() }
+    }
+
+    /// This structure as the level `detail` moves it, whose places a state has: many masses that move rigidly have no modes.
+    pub fn moved_at(&self, detail: Detail) -> Structure {
+        if detail == Detail::Rigid && self.one().is_none() { self.with_lowest(0) } else { self.at(detail) }
     }
 }

@@ -167,7 +167,8 @@ impl Outcome {
         let rotation = peaks.theta().magnitude / libm::atan(run.structure.base().tan_alpha_cg);
         let magnitudes = layout.outputs.iter().map(|of| peaks.of(*of).map_or(f64::NAN, |peak| peak.magnitude));
         let mut all = smallvec![f64::NAN; measures];
-        let left = Residual::all(&run.structure).map(|of| of.of(&run.structure, &finish.motion).abs());
+        let moved = run.structure.moved_at(run.detail);
+        let left = Residual::all(&moved).map(|of| of.of(&moved, &finish.motion).abs());
         let (places, all_of_run) =
             (layout.places.iter().chain(places), magnitudes.chain([rotation]).chain(left).chain(S_a));
         places.zip(all_of_run).for_each(|(place, magnitude)| all[*place] = magnitude);
