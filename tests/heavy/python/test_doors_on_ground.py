@@ -7,7 +7,7 @@ import flexible_rocking as fr
 import numpy as np
 import pytest
 from frames import Frame, ties_of, toml
-from test_doors import TIES, Scene, at_end, co_simulation, command_line, export, numbered, write
+from test_doors import TIES, Scene, co_simulation, command_line, export, write
 from test_doors_of_python import found_in
 
 
