@@ -18,7 +18,7 @@
 //! ```
 //!
 //! On ground that gives the base turns about its middle: B is 0 in these equations, T is Σ ξ N cos θ of the points, whose pressed ones and y
-//! follow from the vertical balance ([`Foundation`](crate::Foundation)), and the first points leave the ground at sin θ = y_s/ξ.
+//! follow from the vertical balance ([`Foundation`](crate::Foundation)), and the first points of elastic ground leave it at sin θ = y_s/ξ.
 //!
 //! As the base lifts off, the force drops because uplift leaves out the moment of the displaced weights: of one mass by
 //! 1/(1 + g/(ω_fc² H)) (2e-3 for Evison, 5e-3 for McManus).
@@ -29,7 +29,7 @@ use crate::numbers::Angle;
 use crate::run::fall::angle_of_no_return;
 use crate::series::bisection::last_where;
 use crate::structure::quantity::{Refused, ensure};
-use crate::{Base, Mode, Phase, Side, Structure};
+use crate::{Base, Foundation, Mode, Phase, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
 
 /// The structure at rest under a horizontal force.
@@ -129,7 +129,8 @@ impl Pushover {
 
     /// Full contact, about to lift off to the right.
     pub fn at_uplift(&self) -> Equilibrium {
-        if let Some(release) = self.structure.foundation().and_then(|of| self.at_rotation(of.first_release())) {
+        let release = |of: &Foundation| self.at_rotation(of.first_release(self.structure.base()));
+        if let Some(release) = self.structure.foundation().and_then(release) {
             return release;
         }
         self.in_full_contact(self.structure.base().hold_at_rest() / self.height * self.of_top[0])
@@ -171,7 +172,7 @@ impl Pushover {
             let held = side.sign() * Restraint::about(base, side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
             return (base.B, held, Phase::Rocking(side));
         };
-        let is_full = theta.abs() <= foundation.first_release();
+        let is_full = theta.abs() <= foundation.first_release(base);
         (0.0, foundation.restoring(base, [sin, cos]), if is_full { Phase::FullContact } else { Phase::Rocking(side) })
     }
 
@@ -340,6 +341,9 @@ mod tests {
                 let about = (0..3).map(|i| w[i] * (h[i] * cos - displaced[i] * sin)).sum::<f64>();
                 assert_relative_eq!(moment, force * about, max_relative = 1e-9);
             }
+            let sin = on_bed.at_uplift().theta.sin(); // the left edge touches the ground without force
+            let carried = |y: f64| points.iter().map(|of| N(of, sin, y)).sum::<f64>() > weight;
+            assert_relative_eq!(points[0].xi * sin, last_where(-1.0, 1.0, carried), max_relative = 1e-12);
         }
         let lifts = pushed.at_uplift();
         assert_relative_eq!(lifts.force * w.dot(&h), (weight + P_0) * B, max_relative = 1e-12);

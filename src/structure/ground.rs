@@ -539,9 +539,12 @@ impl Foundation {
         0.5 * self.points.iter().map(moment).sum::<f64>() * cos
     }
 
-    /// The rotation at which the first points leave the ground while all others stay pressed, rad; π/2 if it is beyond.
-    pub(crate) fn first_release(&self) -> f64 {
-        libm::asin((self.y_s / self.points[0].xi).min(1.0))
+    /// The rotation of a structure on this `base`, held at growing angles, at which the first point leaves the ground, rad; π/2 if it is
+    /// beyond.
+    pub(crate) fn first_release(&self, base: &Base) -> f64 {
+        let left = self.points[0].xi;
+        let is_pressed = |sin: f64| self.held_at(sin, base)[0] < left * sin;
+        libm::asin(if self.yields { last_where(0.0, 1.0, is_pressed) } else { (self.y_s / left).min(1.0) })
     }
 }
 
