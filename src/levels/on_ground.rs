@@ -392,7 +392,8 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
         let (ground, base) = (structure.ground(), structure.base());
         let of = |state: &State<Modes>| energy(structure, ground.contact(state, base), state, dissipators);
         let (resting, room) = if ground.yields {
-            let Some(rest @ [y, sin]) = ground.at_rest(structure, &|i| state.u.settlement(ground, i)) else {
+            let now = libm::sin(state.theta);
+            let Some(rest @ [y, sin]) = ground.at_rest(structure, now, &|i| state.u.settlement(ground, i)) else {
                 return false;
             };
             let mut u = Modes::each(structure, |_, mode| base.g * mode.gamma * sin / mode.stiffness);

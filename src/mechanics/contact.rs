@@ -54,20 +54,25 @@ impl Foundation {
         begun
     }
 
-    /// y (m) and sin θ of `structure` at rest on points that have settled for good by `s` (m), the way it goes from their tilt on without
-    /// inertia: Σ N = m_t g + P and Σ ξ N = g S_1 tan θ + g² sin θ Σ Γ²/(μ ω²), with N = min(q, k max(0, −e)). None if it falls over.
-    pub(crate) fn at_rest(&self, structure: &Structure, s: &dyn Fn(usize) -> f64) -> Option<[f64; 2]> {
+    /// y (m) and sin θ of `structure` at rest on points that have settled for good by `s` (m): Σ N = m_t g + P and Σ ξ N = g S_1 tan θ +
+    /// g² sin θ Σ Γ²/(μ ω²), with N = min(q, k max(0, −e)). A rounded bed has several rests: this one is the way that the structure goes
+    /// without inertia from the rotation of the sine `now`, or from the tilt of the points where it falls over from there. None if it falls
+    /// over from both.
+    pub(crate) fn at_rest(&self, structure: &Structure, now: f64, s: &dyn Fn(usize) -> f64) -> Option<[f64; 2]> {
         let (weighs, leans) = overturns(structure.base(), structure.body(), structure.modes());
         let turned_back = |sin: f64| {
+            let sin = sin.clamp(-1.0, 1.0);
             let y = self.level(sin, structure.base(), s);
             let moment = |(i, of): (usize, &ContactPoint)| of.xi * of.force(of.xi * sin - y - s(i));
             self.points.iter().enumerate().map(moment).sum::<f64>() - (weighs / (1.0 - sin * sin).sqrt() + leans) * sin
         };
-        let tilted = libm::sin(self.residual(s, 1));
-        let way = if turned_back(tilted) < 0.0 { 1.0 } else { -1.0 };
-        let leans_on = |by: f64| way * turned_back(tilted + way * by) < 0.0;
-        let far = (-30..0).map(|i| libm::exp2(f64::from(i))).find(|by| !leans_on(*by))?;
-        let sin = tilted + way * last_where(0.0, far, leans_on);
+        let rest_from = |start: f64| {
+            let way = if turned_back(start) < 0.0 { 1.0 } else { -1.0 };
+            let leans_on = |by: f64| way * turned_back(start + way * by) < 0.0;
+            let far = (-30..0).map(|i| libm::exp2(f64::from(i))).find(|by| !leans_on(*by))?;
+            Some(start + way * last_where(0.0, far, leans_on))
+        };
+        let sin = rest_from(now).or_else(|| rest_from(libm::sin(self.residual(s, 1))))?;
         Some([self.level(sin, structure.base(), s), sin])
     }
 

@@ -53,7 +53,7 @@ impl Residual {
         let Some(ground) = Q::foundation(structure) else { return f64::NAN };
         let Motion { phase, state, dissipators: Dissipators { slip, friction, settling, .. }, .. } = motion;
         let s = |i: usize| state.u.settlement(ground, i);
-        let rest = || ground.at_rest(structure, &s).unwrap_or([f64::NAN; 2]);
+        let rest = || ground.at_rest(structure, libm::sin(state.theta), &s).unwrap_or([f64::NAN; 2]);
         match self.name {
             "x_end" => state.u.slide(ground).unwrap_or(f64::NAN),
             "slip_path" => *slip,
@@ -87,7 +87,7 @@ mod tests {
         let under = structure.foundation().unwrap();
         let place = |i: usize| under.points[i].xi / 3.0;
         let s = |i: usize| -20.0 * under.y_s * place(i).powi(4) * (1.0 + 0.2 * place(i));
-        let [y, sin] = under.at_rest(&structure, &s).unwrap();
+        let [y, sin] = under.at_rest(&structure, 0.0, &s).unwrap();
         let force =
             |i: usize| (under.points[i].k * (under.points[i].xi * sin - y - s(i))).clamp(0.0, under.points[i].q);
         let weight = 600e3 * parameters.g;
@@ -97,5 +97,11 @@ mod tests {
         let omega_fc = std::f64::consts::TAU * parameters.f_fc;
         let leans = 450e3 * parameters.g * (9.0 * tan + parameters.g / omega_fc.powi(2) * sin);
         assert!((moment - leans).abs() < 1e-12 * weight * 3.0 && sin > 1e-5, "{y} {sin}");
+        let ground = Ground { n_points: Some(3.0), ..ground };
+        let structure = Structure::new(parameters).unwrap().on(&ground).unwrap();
+        let under = structure.foundation().unwrap();
+        let rounded = |i: usize| if i == 1 { 0.0 } else { 0.02 };
+        let rests = [1e-3, -1e-3].map(|now| under.at_rest(&structure, now, &rounded).unwrap());
+        assert!(rests[0][1] > 1e-3 && rests[1] == [rests[0][0], -rests[0][1]], "{rests:?}");
     }
 }
