@@ -98,12 +98,18 @@ impl Foundation {
             of_points + tendon + m_t * g * y + weighs * (1.0 - sin * sin).sqrt() - 0.5 * leans * sin * sin
         };
         let rest = raised(sin);
-        // of a smaller d gravity takes less, and a structure that falls over beyond it may come to rest within it
-        let within = |turned: f64| {
-            let room = [1.0, -1.0].map(|way| raised((sin + way * turned).clamp(-1.0, 1.0)) - rest);
-            (0.5 * pressed).min(room[0]).min(room[1])
-        };
-        (0..TURNS).map(|i| within(turned * libm::exp2(-f64::from(i)))).fold(0.0, f64::max)
+        let (mut least, mut room) = (0.0_f64, [0.0; 2]);
+        // of a smaller d gravity takes less, and a structure that falls over or finds another rest beyond it may come to rest within it
+        for i in (0..TURNS).rev() {
+            let turned = turned * libm::exp2(-f64::from(i));
+            let wider = [1.0, -1.0].map(|way| raised((sin + way * turned).clamp(-1.0, 1.0)) - rest);
+            if wider[0] < room[0] || wider[1] < room[1] {
+                break;
+            }
+            room = wider;
+            least = least.max((0.5 * pressed).min(room[0]).min(room[1]));
+        }
+        least
     }
 
     /// The points that carry the base in `state`.
