@@ -411,6 +411,11 @@ impl<Q: Coordinates> Engine<Q> {
         self.motion = motion;
     }
 
+    /// Sets whether an advance ends at the first transition ([`Settings::stops`]).
+    pub fn set_stops(&mut self, stops: bool) {
+        self.settings.stops = stops;
+    }
+
     /// Sets the clock to `time` (s). Nothing but the times that the engine reports depends on it.
     pub fn set_time(&mut self, time: f64) {
         self.motion.time = time;

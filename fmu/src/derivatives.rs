@@ -20,9 +20,7 @@ impl<Q: Runs> RockingModel<Q> {
             let reactions = rates.reactions();
             let rate = |source| match source {
                 Source::Output(of) => Some(rates.of(of)),
-                Source::Coordinate(which) => {
-                    Some(scene.components(&scene.engine.sample(load.value).state_rates())[which])
-                }
+                Source::Coordinate(which) => scene.components(scene.engine.sample(load.value).state_rates()).nth(which),
                 Source::Reaction(of) => Some(of(&reactions)),
                 Source::Restraint(of) => Some(of(&scene.engine.restraint_rates(load.value))),
                 Source::Ground(true) => Some(load.slope.a_v),

@@ -12,16 +12,18 @@ pub(crate) fn warn(logger: &Logger, known: &Findings, found: &Findings) {
     (0..ASSUMPTIONS.len())
         .filter(is_new)
         .filter_map(|which| found.warning(which, &Limits::default()))
-        .for_each(|warning| logger.warning(&warning));
+        .for_each(|warning| logger.warning(|| warning));
 }
 
 /// An event; where contact is held by force, which is not the model's, a warning.
 pub(crate) fn log<Q: Runs>(logger: &Logger, shows_u: bool, transition: &Transition<Q>) {
     match transition.kind {
-        TransitionKind::Settling => logger.warning(&format!(
-            "{}; too many transitions within one vibration period: contact is held for the rest of it",
-            describe(shows_u, transition)
-        )),
+        TransitionKind::Settling => logger.warning(|| {
+            format!(
+                "{}; too many transitions within one vibration period: contact is held for the rest of it",
+                describe(shows_u, transition)
+            )
+        }),
         _ => logger.event(|| describe(shows_u, transition)),
     }
 }
@@ -29,12 +31,14 @@ pub(crate) fn log<Q: Runs>(logger: &Logger, shows_u: bool, transition: &Transiti
 /// Warns that a ground acceleration, of which values alone are set, is held over each step up to `time` (s).
 #[cold]
 pub(crate) fn warn_of_stairs(logger: &Logger, time: f64) {
-    logger.warning(&format!(
-        "t = {time} s: the host sets new values of the ground acceleration (a_g, a_v) at every step without their slopes, \
-         and each value is held over its step: the peaks of such a stepped motion can be tens of per cent off. Give the \
-         ground motion as the parameter record, or set a_g_late = true, or set the slope (the time derivative) with each \
-         value"
-    ));
+    logger.warning(|| {
+        format!(
+            "t = {time} s: the host sets new values of the ground acceleration (a_g, a_v) at every step without their \
+             slopes, and each value is held over its step: the peaks of such a stepped motion can be tens of per cent off. \
+             Give the ground motion as the parameter record, or set a_g_late = true, or set the slope (the time \
+             derivative) with each value"
+        )
+    });
 }
 
 fn describe<Q: Runs>(shows_u: bool, transition: &Transition<Q>) -> String {

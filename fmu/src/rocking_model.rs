@@ -263,24 +263,26 @@ impl<Q: Runs> Model for RockingModel<Q> {
         for of_file in scene.source.iter().flat_map(|source| &source.sentences) {
             let (found, assumed) = of_file.split_at(1.min(of_file.len()));
             found.iter().for_each(|found| logger.event(|| found.clone()));
-            assumed.iter().for_each(|assumed| logger.warning(assumed));
+            assumed.iter().for_each(|assumed| logger.warning(|| assumed.clone()));
         }
         let g = scene.engine.structure().base().g;
         for doubt in scene.ground.iter().flat_map(|ground| rocking_records::doubts(ground, g)) {
-            logger.warning(&format!("the record: {doubt}"));
+            logger.warning(|| format!("the record: {doubt}"));
         }
         let structure = scene.engine.structure();
         let doubts = [structure.doubts(), of_structure(structure, setup.detail)].concat();
-        doubts.iter().for_each(|doubt| logger.warning(doubt));
+        doubts.into_iter().for_each(|doubt| logger.warning(|| doubt));
         match interface {
             Interface::CoSimulation(_) => inputs.start(setup.between()),
             Interface::ModelExchange => {
                 let watched = [("peaks", setup.peaks), ("validity", setup.validity)];
                 for (name, _) in watched.into_iter().filter(|(_, is_watched)| *is_watched) {
-                    logger.warning(&format!(
-                        "{name} = true has no effect in model exchange, where the host integrates: the values are NaN; use \
-                         co-simulation"
-                    ));
+                    logger.warning(|| {
+                        format!(
+                            "{name} = true has no effect in model exchange, where the host integrates: the values are \
+                             NaN; use co-simulation"
+                        )
+                    });
                 }
                 scene.leave_to_host(inputs.values(scene.engine.structure()));
             }
@@ -304,9 +306,7 @@ impl<Q: Runs> Model for RockingModel<Q> {
         };
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
-        if scene.engine.settings().stops != stops {
-            scene.set(|settings| settings.stops = stops)?;
-        }
+        scene.engine.set_stops(stops);
         let known = setup.validity.then_some(scene.validity);
         let shows_u = scene.shows_u();
         let told: &mut Tell<Q> = &mut |transition| log(logger, shows_u, transition);
@@ -418,7 +418,7 @@ impl<Q: Runs> Model for RockingModel<Q> {
 
     fn states(&mut self) -> Result<Vec<f64>, Failure> {
         let scene = self.scene()?;
-        Ok(scene.components(&scene.engine.motion().state))
+        Ok(scene.components(scene.engine.motion().state).collect())
     }
 
     fn set_states(&mut self, states: &[f64]) -> Result<(), Failure> {
@@ -431,7 +431,7 @@ impl<Q: Runs> Model for RockingModel<Q> {
 
     fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
         let scene = self.scene()?;
-        let usual = scene.components(&scene.engine.structure().usual()).into_iter();
+        let usual = scene.components(scene.engine.structure().usual());
         Ok(usual.map(|of| if of > 0.0 { of } else { 1.0 }).collect()) // 1 of what does not move at this level
     }
 
@@ -442,7 +442,7 @@ impl<Q: Runs> Model for RockingModel<Q> {
             let &Motion { time, state: State { u, theta, .. }, .. } = scene.engine.motion();
             return Err(Refusal::NoStateRates { time, u: u.total(), theta }.into());
         }
-        Ok(scene.components(&rates))
+        Ok(scene.components(rates).collect())
     }
 
     fn indicators(&mut self) -> Result<Vec<f64>, Failure> {

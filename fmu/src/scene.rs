@@ -149,10 +149,10 @@ impl<Q: Runs> Scene<Q> {
     }
 
     /// The numbers of a `state`, in the order of the table.
-    pub fn components(&self, state: &State<Q>) -> Vec<f64> {
+    pub fn components(&self, state: State<Q>) -> impl Iterator<Item = f64> {
         let of = |coordinates: Q| (0..self.lateral).map(move |j| self.place(j).map_or(0.0, |at| coordinates.of(at)));
-        let settled = (0..self.settlements).map(|i| self.settled(i).map_or(0.0, |at| state.u.of(at)));
-        of(state.u).chain(of(state.u_dot)).chain([state.theta, state.theta_dot]).chain(settled).collect()
+        let settled = (0..self.settlements).map(move |i| self.settled(i).map_or(0.0, |at| state.u.of(at)));
+        of(state.u).chain(of(state.u_dot)).chain([state.theta, state.theta_dot]).chain(settled)
     }
 
     /// The place in the engine of lateral coordinate `j` of the table, whose last on ground that gives are y, and x of a base that may

@@ -41,8 +41,8 @@ hostile_calls! { on_ground:
 fn structure() -> Target {
     // the top mass above the pivot of a foundation without inertia
     let sticks = [("m0", 0.0), ("J0", 0.0), ("B", 0.3), ("theta_0", 0.1), ("u_0", 0.3)];
-    let sticks = sticks.map(|(name, value)| (wall::reference(name), value)).into();
-    Target { sticks, ..subject::<f64>(wall::resources()) }
+    let sticks = sticks.map(|(name, value)| (wall::reference(&wall::contents(), name), value)).into();
+    Target { sticks, ..subject::<f64>(wall::resources(&wall::contents())) }
 }
 
 /// Two floors, with a mode left out, and dissipators; the foundation has inertia.

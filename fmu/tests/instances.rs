@@ -4,7 +4,13 @@
 mod wall;
 
 use FlexibleRocking::fmi2::{self, CallbackFunctions, CallbackLogger};
+use FlexibleRocking::resources::Contents;
+use FlexibleRocking::variables::VariableTable;
+use fmi_unit::{Causality, Variable};
 use libc::{c_char, c_int, c_void};
+use rocking::structure::description::{Damping, Storey};
+use rocking::structure::natural_quantities::Numbers;
+use rocking::{Ground, Parameters, Structure};
 use std::ffi::CString;
 use std::fs;
 use std::hint::spin_loop;
@@ -18,14 +24,14 @@ use wall::{contents, reference, resources};
 const OK: c_int = 0;
 const ERROR: c_int = 3;
 
-/// An instance for co-simulation that logs into `environment` by a `logger`.
-fn instantiate(environment: *mut c_void, logger: Option<CallbackLogger>) -> *mut c_void {
+/// An instance of `contents` for co-simulation that logs into `environment` by a `logger`.
+fn instantiate(contents: &Contents, environment: *mut c_void, logger: Option<CallbackLogger>) -> *mut c_void {
     let (allocate_memory, free_memory, step_finished) = (null(), null(), null());
     let functions =
         CallbackFunctions { logger, allocate_memory, free_memory, step_finished, component_environment: environment };
-    let folder = resources();
+    let folder = resources(contents);
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
-    let guid = CString::new(FlexibleRocking::guid(&contents())).unwrap();
+    let guid = CString::new(FlexibleRocking::guid(contents)).unwrap();
     unsafe { fmi2::Instantiate(c"wall".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0) }
 }
 
@@ -33,13 +39,13 @@ fn instantiate(environment: *mut c_void, logger: Option<CallbackLogger>) -> *mut
 struct Host(*mut c_void);
 
 impl Host {
-    fn new() -> Host {
-        Host(instantiate(null_mut(), None))
+    fn new(contents: &Contents) -> Host {
+        Host(instantiate(contents, null_mut(), None))
     }
 
     /// Enters initialization mode, with the record in the file at `path`, and with peaks and limits watched.
     fn enter(&self, path: &Path) {
-        let [record, switches @ ..] = ["record", "peaks", "validity"].map(reference);
+        let [record, switches @ ..] = ["record", "peaks", "validity"].map(|name| reference(&contents(), name));
         let path = CString::new(path.to_str().unwrap()).unwrap();
         unsafe {
             assert_eq!(fmi2::SetString(self.0, &record, 1, &path.as_ptr()), OK);
@@ -79,7 +85,7 @@ fn host_and_record(samples: u32) -> (Host, TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("quake.csv");
     fs::write(&path, quake(samples)).unwrap();
-    (Host::new(), folder, path)
+    (Host::new(&contents()), folder, path)
 }
 
 /// A table of so many samples, every 20 ms.
@@ -95,7 +101,7 @@ fn nothing_is_left_when_the_last_instance_goes() {
     let run = |name: &str| {
         let path = folder.path().join(name);
         fs::write(&path, quake(2000)).unwrap();
-        let [first, second] = [Host::new(), Host::new()];
+        let [first, second] = [(); 2].map(|()| Host::new(&contents()));
         for host in [&first, &second] {
             host.enter(&path);
             host.exit();
@@ -139,6 +145,51 @@ fn a_record_is_kept_for_another_run() {
     assert!(again < size + samples + size / 10 && 2 * again < parsed, "{again} bytes, at first {parsed}");
 }
 
+/// Hosts in real time count on this, whatever the base and the ground do, also if from 2 s on they set values without slopes, of
+/// which the log warns. Peaks and limits are not watched, and nobody reads the log.
+#[test]
+fn no_step_allocates() {
+    let one = |more| Structure::new(Parameters { J0: 1.19, f_fc: 11.0, ..more }).unwrap();
+    let tied = Parameters { P_0: 500.0, k_t: 4e4, xi_d: 0.2, c_d: 30.0, k_d: 1e5, F_y: 150.0, ..Parameters::EVISON };
+    let storeys = Vec::from_iter((1..=10).map(|i| Storey { m: 4e4, h: 3.5 * f64::from(i), k: 6e7 }));
+    let base = Numbers::of(&[("m0", 2e4), ("J0", 3e4), ("B", 3.0)]).unwrap();
+    let ten = Structure::from_storeys(&base, &Damping::All(0.02), &storeys).unwrap();
+    let soft = Ground { f_v: Some(60.0), ..Ground::default() };
+    let gives = Ground { mu_c: Some(0.1), fs: Some(2.0), n_points: Some(5.0), ..soft.clone() };
+    let scenes = [
+        one(Parameters::EVISON),
+        one(tied),
+        one(Parameters::EVISON).on(&soft).unwrap(),
+        one(tied).on(&gives).unwrap(),
+        ten.clone(),
+        ten.on(&Ground { f_v: Some(4.0), ..gives }).unwrap(),
+    ];
+    let ground = |i: u32| [5.1, 13.7, 37.3].map(|omega: f64| 2.0 * (0.001 * omega * f64::from(i)).sin()).iter().sum();
+    for structure in scenes {
+        let contents = structure.into();
+        let variables = VariableTable::new(&contents).variables;
+        let is_output = |of: &Variable| of.causality == Causality::Output && of.data_type.limits().is_some();
+        let outputs = Vec::from_iter((0..).zip(&*variables).filter(|(_, of)| is_output(of)).map(|(which, _)| which));
+        let [a_g, transitions] = ["a_g", "transitions"].map(|name| reference(&contents, name));
+        let (host, mut values, mut count) = (Host::new(&contents), vec![0.0; outputs.len()], 0);
+        assert_eq!(unsafe { fmi2::EnterInitializationMode(host.0) }, OK);
+        host.exit();
+        let mut step = |i: u32| unsafe {
+            let [value, next]: [f64; 2] = [i, i + 1].map(ground);
+            assert_eq!(fmi2::SetReal(host.0, &a_g, 1, &value), OK);
+            if i < 2000 {
+                assert_eq!(fmi2::SetRealInputDerivatives(host.0, &a_g, 1, &1, &((next - value) / 0.001)), OK);
+            }
+            host.step(0.001 * f64::from(i), 0.001);
+            assert_eq!(fmi2::GetReal(host.0, outputs.as_ptr(), outputs.len(), values.as_mut_ptr()), OK);
+        };
+        let allocations = Vec::from_iter((0..3000).map(|i| allocation_counter::measure(|| step(i)).count_total));
+        assert_eq!(unsafe { fmi2::GetInteger(host.0, &transitions, 1, &mut count) }, OK);
+        assert!(count > 10, "{count} transitions");
+        assert_eq!(allocations.iter().position(|count| *count > 0), None, "{:?}", contents.description());
+    }
+}
+
 /// Of two threads that call one instance at the same time, one is served and the other refused: never both.
 #[test]
 fn a_call_while_another_thread_calls_is_refused() {
@@ -161,7 +212,7 @@ fn a_call_while_another_thread_calls_is_refused() {
     let logger: unsafe extern "C" fn(_, _, _, _, _) = look;
     let logger = unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) };
     let inside = Inside::default();
-    let c = instantiate((&raw const inside).cast_mut().cast(), Some(logger)).expose_provenance();
+    let c = instantiate(&contents(), (&raw const inside).cast_mut().cast(), Some(logger)).expose_provenance();
     // each is refused, with a message if it is served
     let call =
         || (0..CALLS).for_each(|_| assert_eq!(unsafe { fmi2::CancelStep(with_exposed_provenance_mut(c)) }, ERROR));

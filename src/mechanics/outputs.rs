@@ -389,20 +389,21 @@ impl Output {
     }
 
     /// The outputs of `structure` on ground that gives of whose peaks the largest is the peak of this one, each with its factor.
-    pub(crate) fn parts(self, structure: &Structure) -> Vec<(Output, f64)> {
-        let (Some(foundation), B) = (structure.foundation(), structure.base().B) else { return Vec::new() };
-        let (last, width) = (foundation.points.len() - 1, |[from, to]: [f64; 2]| to - from);
-        match self {
-            Output::uplift => vec![(lifted(0), 1.0), (lifted(1), 1.0)],
-            settlement => vec![(sunk(0), 1.0), (sunk(1), 1.0)],
-            N_left => vec![(N(0), 1.0)],
-            N_right => vec![(N(last), 1.0)],
-            pressure => {
-                let inner = (1..last).map(|i| (N(i), 1.0 / width(foundation.strip(i, B))));
-                [0, 1].map(|side| (edge(side), 1.0)).into_iter().chain(inner).collect()
-            }
-            _ => Vec::new(),
-        }
+    pub(crate) fn parts(self, structure: &Structure) -> impl Iterator<Item = (Output, f64)> {
+        structure.foundation().into_iter().flat_map(move |foundation| {
+            let last = foundation.points.len() - 1;
+            let (first, second, inner) = match self {
+                Output::uplift => (Some(lifted(0)), Some(lifted(1)), 1..1),
+                settlement => (Some(sunk(0)), Some(sunk(1)), 1..1),
+                N_left => (Some(N(0)), None, 1..1),
+                N_right => (Some(N(last)), None, 1..1),
+                pressure => (Some(edge(0)), Some(edge(1)), 1..last),
+                _ => (None, None, 1..1),
+            };
+            let width = |[from, to]: [f64; 2]| to - from;
+            let inner = inner.map(move |i| (N(i), 1.0 / width(foundation.strip(i, structure.base().B))));
+            first.into_iter().chain(second).map(|of| (of, 1.0)).chain(inner)
+        })
     }
 
     /// The output as a multiple of `other`, if it is one in every motion of `structure`.
@@ -504,7 +505,7 @@ impl Output {
             settled => foundation.residual(|i| x.u.settlement(foundation, i), 0),
             tilt => foundation.residual(|i| x.u.settlement(foundation, i), 1),
             edge(side) => {
-                let each = foundation.of_edge(side, x.base().B).into_iter();
+                let each = foundation.of_edge(side, x.base().B);
                 let each = each.map(|(i, factor)| N(i).on_ground(x, foundation) * factor);
                 each.reduce(|sum, of| sum + of).expect("a strip is at the edge")
             }
@@ -529,7 +530,7 @@ impl Output {
             _ if Q::foundation(x.structure).is_none() => self.smooth(x),
             lifted(_) | sunk(_) | P_t => self.smooth(x).positive(),
             _ if self.search() == Search::Parts => {
-                let parts = self.parts(x.structure).into_iter();
+                let parts = self.parts(x.structure);
                 parts.map(|(part, factor)| part.of(x) * factor).reduce(K::larger).expect("it has parts")
             }
             _ => self.smooth(x),

@@ -245,8 +245,8 @@ impl Reach {
                 Some(point.map_or(most, |i| most.min(foundation.points[i].q)))
             };
             let and = |sum: Option<f64>, (i, factor)| Some(sum.unwrap_or(0.0) + bound(Output::N(i))? * factor);
-            let edge = if let Output::edge(side) = output { foundation.of_edge(side, base.B) } else { Vec::new() };
-            if let Some(bound) = edge.into_iter().fold(bound(output), and) {
+            let edge = if let Output::edge(side) = output { Some(foundation.of_edge(side, base.B)) } else { None };
+            if let Some(bound) = edge.into_iter().flatten().fold(bound(output), and) {
                 return bound;
             }
         }

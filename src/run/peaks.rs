@@ -133,7 +133,7 @@ impl Peaks {
             let over = |other: &Output| Some((*other, output.over(*other, structure)?));
             match alone.iter().find_map(over) {
                 _ if output.search() == Search::Parts => {
-                    let parts = output.parts(structure).into_iter();
+                    let parts = output.parts(structure);
                     with.extend(parts.filter_map(|(part, factor)| Some((output, search(part)?, factor))));
                 }
                 Some((other, factor)) => with.extend(search(other).map(|place| (output, place, factor))),

@@ -396,11 +396,12 @@ impl Foundation {
 
     /// The points whose strips reach into the outer sixth of a base of half-width `B` (m), or into the outer strip if this is wider, at the
     /// left (0) or right (1) edge. The sum of their forces times these factors (1/m) is the mean pressure there, N/m.
-    pub(crate) fn of_edge(&self, side: usize, B: f64) -> Vec<(usize, f64)> {
+    pub(crate) fn of_edge(&self, side: usize, B: f64) -> impl Iterator<Item = (usize, f64)> {
         let end = (self.strip(0, B)[1] + B).max(B / 3.0) - B;
-        let inside = (0..self.points.len()).map(|i| (i, self.strip(i, B))).filter(|(_, [from, _])| *from < end);
+        let inside =
+            (0..self.points.len()).map(move |i| (i, self.strip(i, B))).filter(move |(_, [from, _])| *from < end);
         let last = side * (self.points.len() - 1);
-        inside.map(|(i, [from, to])| (last.abs_diff(i), (to.min(end) - from) / (to - from) / (end + B))).collect()
+        inside.map(move |(i, [from, to])| (last.abs_diff(i), (to.min(end) - from) / (to - from) / (end + B)))
     }
 
     /// The sum of the stiffnesses of all points times this power of their places.

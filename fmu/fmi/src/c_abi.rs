@@ -671,7 +671,7 @@ mod tests {
             [(|| panic!("plain"), "plain"), (|| panic!("{} made", 1), "1 made"), (|| panic_any(1), "panic")];
         for (parts, message) in panics {
             let (tell, told) = std::sync::mpsc::channel();
-            let sink: Sink = Box::new(move |_, _, text| tell.send(text.to_owned()).unwrap());
+            let sink: Sink = Some(Box::new(move |_, _, text| tell.send(text.to_owned()).unwrap()));
             assert!(instantiate::<crate::fmi3::Function>("Instantiate", &[], sink, parts).is_null());
             let expected = format!("fmi3Instantiate: internal failure, please report it: {message}");
             assert_eq!(told.recv().unwrap(), expected);

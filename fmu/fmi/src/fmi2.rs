@@ -53,13 +53,13 @@ pub struct EventInfo {
 }
 
 fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
-    let Some(logger) = functions.logger else { return Box::new(|_, _, _| ()) };
+    let logger = functions.logger?;
     let environment = functions.component_environment;
     let name = CString::new(instance_name).expect("it was read up to its NUL");
     // the host reads a message as a printf format, in which # marks variables
-    Box::new(move |status, category, message| unsafe {
+    Some(Box::new(move |status, category, message| unsafe {
         logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), escaped(message, &['%', '#']).as_ptr());
-    })
+    }))
 }
 
 /// The truth that the `fmi2Boolean` `value`, given as `name`, stands for.

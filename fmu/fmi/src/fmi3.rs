@@ -47,11 +47,11 @@ unsafe fn create<M: Model>(
 }
 
 fn sink(log: Option<LogMessageCallback>, environment: *mut c_void) -> Sink {
-    let Some(log) = log else { return Box::new(|_, _, _| ()) };
+    let log = log?;
     // # marks variables
-    Box::new(move |status, category, message| unsafe {
+    Some(Box::new(move |status, category, message| unsafe {
         log(environment, status as c_int, category.as_ptr(), escaped(message, &['#']).as_ptr());
-    })
+    }))
 }
 
 impl IntermediateUpdate {
@@ -288,7 +288,7 @@ with_lists! {
             let progress = instance.do_step(point, step)?;
             let (time, may_return_early) = (instance.model.time()?, instance.interface.stepping().early_return);
             if let (StepEnd::Ended, Some(ending)) = (progress, instance.ending()?) {
-                instance.logger.warning(&format!("fmi3DoStep: {ending}"));
+                instance.logger.warning(|| format!("fmi3DoStep: {ending}"));
             }
             write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == StepEnd::Event))?;
             write("terminateSimulation", terminateSimulation, u8::from(progress == StepEnd::Ended))?;

@@ -98,7 +98,6 @@ impl Instance {
             first,
             are_real: variables.iter().map(|variable| variable.data_type.limits().is_some()).collect(),
             ranges: variables.iter().map(range).collect(),
-            variables,
             interface,
             stage: Stage::Instantiated,
             experiment: Experiment::default(),
@@ -107,12 +106,13 @@ impl Instance {
             handling: EventHandling::default(),
             at_start,
             snapshots: Snapshots::default(),
-            reals: Vec::new(),
-            positions: Vec::new(),
+            reals: vec![0.0; variables.len()],
+            positions: Vec::with_capacity(variables.len()),
             shown: Vec::new(),
             host,
             asked: None,
             led_to: None,
+            variables,
         }
     }
 
@@ -650,9 +650,9 @@ impl Instance {
     fn warn_of_events(&mut self, how: &str) -> Result<(), Failure> {
         if !std::mem::replace(&mut self.handling.is_warned, true) {
             let time = self.model.time()?;
-            self.logger.warning(&format!(
-                "t = {time} s: {how}. Without it the FMU applies no event, and its results are wrong"
-            ));
+            self.logger.warning(|| {
+                format!("t = {time} s: {how}. Without it the FMU applies no event, and its results are wrong")
+            });
         }
         Ok(())
     }

@@ -61,8 +61,8 @@ impl Category {
     }
 }
 
-/// Takes the status, the category's name and the message.
-pub type Sink = Box<dyn Fn(Status, &CStr, &str)>;
+/// Takes the status, the category's name and the message; none if nobody listens.
+pub type Sink = Option<Box<dyn Fn(Status, &CStr, &str)>>;
 
 /// Sends messages. The reasons of discards and errors are always sent, events and warnings while their category is on.
 pub struct Logger {
@@ -74,13 +74,13 @@ pub struct Logger {
 impl Logger {
     /// A logger into `sink`, with warnings and without events.
     pub fn new(sink: Sink) -> Logger {
-        Logger { sink, on: [false, true] }
+        Logger { on: [false, sink.is_some()], sink }
     }
 
     /// Switches `categories` on or off; discards and errors stay on.
     pub fn switch(&mut self, categories: &[Category], on: bool) {
         for category in categories {
-            self.on.get_mut(*category as usize).into_iter().for_each(|is_on| *is_on = on);
+            self.on.get_mut(*category as usize).into_iter().for_each(|is_on| *is_on = on && self.sink.is_some());
         }
     }
 
@@ -91,12 +91,12 @@ impl Logger {
         }
     }
 
-    /// Sends a warning. The call that it comes from returns OK: the standard lets a simulation go on after
-    /// `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after `fmi2ExitInitializationMode` as after
-    /// `fmi2DoStep`.
-    pub fn warning(&self, message: &str) {
+    /// Sends a warning, which is put into words only if someone listens. The call that it comes from returns OK: the
+    /// standard lets a simulation go on after `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after
+    /// `fmi2ExitInitializationMode` as after `fmi2DoStep`.
+    pub fn warning(&self, message: impl FnOnce() -> String) {
         if self.on[Category::Warning as usize] {
-            self.send(Status::Warning, Category::Warning, message);
+            self.send(Status::Warning, Category::Warning, &message());
         }
     }
 
@@ -107,6 +107,6 @@ impl Logger {
     }
 
     fn send(&self, status: Status, category: Category, message: &str) {
-        (self.sink)(status, category.name(), message);
+        self.sink.iter().for_each(|sink| sink(status, category.name(), message));
     }
 }

@@ -11,14 +11,14 @@ pub fn contents() -> Contents {
     Structure::new(Parameters::EVISON).unwrap().into()
 }
 
-/// Its folder `resources`.
-pub fn resources() -> TempDir {
+/// The folder `resources` of an archive with these `contents`.
+pub fn resources(contents: &Contents) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join(CONTENTS_FILE), contents().to_bytes()).unwrap();
+    std::fs::write(folder.path().join(CONTENTS_FILE), contents.to_bytes()).unwrap();
     folder
 }
 
-/// The value reference of a variable in FMI 2.0.
-pub fn reference(name: &str) -> u32 {
-    position(&VariableTable::new(&contents()).variables, name) as u32
+/// The value reference of a variable of such an archive in FMI 2.0.
+pub fn reference(contents: &Contents, name: &str) -> u32 {
+    position(&VariableTable::new(contents).variables, name) as u32
 }
