@@ -13,6 +13,14 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 type Stop = Result<Progress, AdvanceError>;
 
 impl<Q: Runs> Scene<Q> {
+    /// Takes a step under `inputs` and goes back, so that the first step of the host finds code and memory at hand.
+    pub fn rehearse(&mut self, inputs: LinearLoad<Q>) {
+        let start = *self.engine.motion();
+        let step = self.engine.structure().vibration().rocking[1].recip();
+        _ = self.engine.advance(step, inputs, &mut ()); // if it fails, the host's own step says why
+        self.engine.set_motion(start);
+    }
+
     /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
     /// host that goes back and steps to the instant that it was told meets it again. One at the very start, where an
     /// input has just jumped, is applied at once: every step takes time.

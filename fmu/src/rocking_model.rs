@@ -273,7 +273,10 @@ impl<Q: Runs> Model for RockingModel<Q> {
         let doubts = [structure.doubts(), of_structure(structure, setup.detail)].concat();
         doubts.into_iter().for_each(|doubt| logger.warning(|| doubt));
         match interface {
-            Interface::CoSimulation(_) => inputs.start(setup.between()),
+            Interface::CoSimulation(_) => {
+                inputs.start(setup.between());
+                scene.rehearse(inputs.now(scene.engine.structure()));
+            }
             Interface::ModelExchange => {
                 let watched = [("peaks", setup.peaks), ("validity", setup.validity)];
                 for (name, _) in watched.into_iter().filter(|(_, is_watched)| *is_watched) {
