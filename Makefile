@@ -11,7 +11,7 @@
 # make dist      out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels    out/wheels: Python packages for these machines with module, command line and archive, and one of the source
 # make release   out/release: archive, packages, page, checksums and changes of a version that has no tag yet, tested
-# make measure   with WHAT=record (criterion), precision (docs/evidence/accuracy.md) or ensembles; nothing else may run (minutes)
+# make measure   with WHAT=record (criterion), precision (docs/evidence/accuracy.md), ensembles or steps; nothing else may run (minutes)
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
 
@@ -119,7 +119,7 @@ of_parts = $(foreach part,$(PARTS),$($(1)_$(part)))
 # Stops before anything is built if the goal is asked for and its variable is empty or has other words.
 known = $(if $(filter $(1),$(MAKECMDGOALS)),$(if $(filter-out $(3),$(or $($(2)),nothing)),$(error $(2) = "$($(2))": give one or more of $(3))))
 $(call known,heavy,PARTS,$(ALL_PARTS))
-$(call known,measure,WHAT,record precision ensembles)
+$(call known,measure,WHAT,record precision ensembles steps)
 packages: targets
 	-@$(call install,$(call of_parts,DEBIAN))
 targets:
@@ -234,10 +234,12 @@ collect:
 	awk '/^## /{is_meant = $$2 == "$(VERSION)"} is_meant' CHANGELOG.md >out/release/CHANGES.md
 	cd out/release && sha256sum * >SHA256SUMS && cat SHA256SUMS
 
+BENCH = RECORD="$$(realpath $(RECORDS)/$(EL_CENTRO))" cargo bench --profile dist --manifest-path benches/Cargo.toml --bench
 measure: $(if $(filter-out record,$(WHAT)),.venv/peers module,.venv/ready)
-	$(if $(filter record,$(WHAT)),RECORD="$$(realpath $(RECORDS)/$(EL_CENTRO))" cargo bench --profile dist --manifest-path benches/Cargo.toml)
+	$(if $(filter record,$(WHAT)),$(BENCH) record)
 	$(if $(filter precision,$(WHAT)),cargo run --release --manifest-path study/Cargo.toml -- precision && $(PYTHON) -m evidence accuracy)
 	$(if $(filter ensembles,$(WHAT)),OMP_NUM_THREADS=1 $(PYTHON) study/ensemble.py && $(PYTHON) study/ensemble_jax.py && $(PYTHON) -m evidence.pictures ensembles)
+	$(if $(filter steps,$(WHAT)),$(BENCH) steps >docs/evidence/steps.csv && $(PYTHON) -m evidence.pictures steps)
 
 # What the demo takes: the example that packs the shared library, and the library, in the folder `deps`, which the example is linked to.
 library:

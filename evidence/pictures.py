@@ -6,6 +6,7 @@
     questions   rotation and probabilities over PGV, by the script of docs/howto/fragility_study.md
     profile     peaks over the height of a building, by the script of docs/howto/frames.md
     ensembles   many runs at once, of the numbers that `make measure WHAT=ensembles` has left in docs/evidence
+    steps       what a step of the FMU costs, of the numbers that `make measure WHAT=steps` has left in docs/evidence
     explore     the page of `make explore` on the record of Pacoima Dam; only if it is named
 """
 
@@ -23,7 +24,7 @@ from matplotlib.patches import Circle
 from tqdm import tqdm
 
 from . import ROOT
-from .figures import COLOURS, QUIET, ROCKING, plt, save, subplots
+from .figures import COLOURS, FIXED, QUIET, ROCKING, plt, save, subplots
 from .paper.specimens import MCMANUS
 from .scenes import RECORD, SCALE, TIME_SCALE, G
 
@@ -96,6 +97,21 @@ def ensembles(path: Path) -> None:
     save(figure, path, title, "Error of θ against time per run: this engine alone and in lanes, heyoka alone and in batches, JAX.")
 
 
+def steps(path: Path) -> None:
+    """What a communication step of 1 ms costs, of the numbers that `make measure WHAT=steps` has left."""
+    rows = pd.read_csv(ROOT / "docs/evidence/steps.csv")
+    figure, axes = subplots(1, 2, 3.6, sharey=True)
+    for axis, (of, label) in zip(axes, {"microseconds": "time of a step (µs)", "engine steps": "steps of the engine in a step"}.items()):
+        for color, (scene, costs) in zip(COLOURS, rows[rows["of"] == of].groupby("scene")):
+            axis.step(costs["value"], costs["share"], where="pre", color=color, label=scene)
+        axis.set(yscale="log", xlabel=label)
+    axes[0].axvline(1000, color=FIXED, linestyle="--", label="1 ms, the duration of a step")
+    axes[0].set(xscale="log", ylabel="share that takes as much or more")
+    axes[1].set(xticks=range(1, 1 + int(rows[rows["of"] == "engine steps"]["value"].max())))
+    figure.legend(*axes[0].get_legend_handles_labels(), ncols=2, loc="outside lower center")
+    save(figure, path, "What a step of the FMU costs", "Shares of 20,000 steps over their times in µs and over the steps of the engine in each.")
+
+
 LEVELS = {"fixed_base": "#d9d9d9", "rigid": "#f0e442", "modal": "#56b4e9", "linear": "#009e73", "auto": "#d55e00"}
 FREQUENCIES = np.geomspace(1, 50, 24)  # Hz
 INTENSITIES = np.geomspace(0.3, 12, 24)  # PGA over g tan α_cg
@@ -166,7 +182,7 @@ PICTURES = {
                                   "Left: one line per record, without the runs that overturn. Right: fragility curves of two piers."),
     "img/profile.svg": drawn_by("docs/howto/frames.md", "Peaks over the height of a building of ten storeys",
                                 "Solid: the building rocks. Dashed: its base is fixed."),
-    "evidence/ensembles.svg": ensembles, "img/explore.png": explore}
+    "evidence/ensembles.svg": ensembles, "evidence/steps.svg": steps, "img/explore.png": explore}
 
 if __name__ == "__main__":
     named = {Path(name).stem: name for name in PICTURES}

@@ -187,7 +187,8 @@ impl Fields {
 
     /// Ground that gives; none if it is rigid.
     fn ground(&self) -> Result<Option<Ground>, String> {
-        let given = OF_GROUND.iter().filter_map(|of| Some(self.given(of.0)?.map(|value| (of.0.to_owned(), value.into()))));
+        let given =
+            OF_GROUND.iter().filter_map(|of| Some(self.given(of.0)?.map(|value| (of.0.to_owned(), value.into()))));
         let given = given.collect::<Result<toml::Table, _>>()?;
         (!given.is_empty()).then(|| given.try_into().map_err(says)).transpose()
     }
