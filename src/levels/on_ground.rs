@@ -414,6 +414,6 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
             (Some(_), _) => return false,
             (None, _) => room,
         };
-        of(state) - of(&resting) < AT_REST * room
+        room > 0.0 && of(state) - of(&resting) < AT_REST * room
     }
 }

@@ -77,15 +77,17 @@ impl Foundation {
     }
 
     /// The energy (J) above this rest, of y (m) and sin θ on points that have settled by `s` (m), below which no point certainly yields:
-    /// half of the least ½ k δ² that presses a point by δ to its capacity, where gravity adds no more than the other half within a rotation
-    /// d, and the energy that turns the base by d.
+    /// half of the least ½ k δ² + ½ v²/w that brings a point to its capacity q = N + k δ + c v, with the velocity w = 1/m_t + ξ²/J_0 that an
+    /// impulse of 1 gives it, where gravity adds no more than the other half within a rotation d, and the energy that turns the base by d.
+    /// 0 if a point is at its capacity at rest.
     pub(crate) fn least_yield(&self, structure: &Structure, [y, sin]: [f64; 2], s: &dyn Fn(usize) -> f64) -> f64 {
+        let (&Base { m_t, J0, g, ties: Ties { P_0, k_t, .. }, .. }, (weighs, leans)) =
+            (structure.base(), overturns(structure.base(), structure.body(), structure.modes()));
         let to_capacity = |(i, point): (usize, &ContactPoint)| {
-            (point.q - point.force(point.xi * sin - y - s(i))).powi(2) / (2.0 * point.k)
+            let left = point.q - point.force(point.xi * sin - y - s(i));
+            left * left / (2.0 * (point.k + point.c * point.c * (1.0 / m_t + point.xi * point.xi / J0)))
         };
         let pressed = self.points.iter().enumerate().map(to_capacity).fold(f64::INFINITY, f64::min);
-        let (&Base { m_t, g, ties: Ties { P_0, k_t, .. }, .. }, (weighs, leans)) =
-            (structure.base(), overturns(structure.base(), structure.body(), structure.modes()));
         // 1 − cos θ is at most 0.55 sin² θ up to half a radian
         let turned = (pressed / (1.1 * weighs + leans)).sqrt();
         let raised = |sin: f64| {
