@@ -127,6 +127,7 @@ enum Command {
 A file of records, fragility.toml:
   records = ['records/*.AT2', { file = 'array.csv', column = 'E-W', scale = 0.5 }]  # as the options of `record`
   scale = { from = 0.2, to = 2, count = 10 }
+  condition = false           # true: how many digits of each run are sure, by a second run at 1 + 1e-12 times the record
   [limits]
   'theta/alpha_cg' = [0.1, 0.5]
   [[structures]]

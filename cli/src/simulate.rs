@@ -18,6 +18,7 @@ use rocking_report::quantities::in_readable_unit;
 use rocking_report::run::{RunSetup, event_line, usual_periods};
 use rocking_report::summary::instant;
 use rocking_report::tables::Line;
+use rocking_sweep::plan::Conditions;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -58,6 +59,9 @@ struct ResultArgs {
     /// Draw the largest acceleration, drift, shear and moment of each floor and storey over the height, and those on a fixed base
     #[arg(long, value_name = "FILE.svg")]
     profile: Option<PathBuf>,
+    /// Find, too, how many digits of each peak and of the outcome are sure, by runs under a changed input
+    #[arg(long)]
+    condition: bool,
 }
 
 impl SimulateArgs {
@@ -115,7 +119,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let limits = args.limits.limits()?;
     let output = args.results.output.as_deref();
     args.results.format.check_beside(output)?;
-    let run = args.motion.load(args.level.conditions())?;
+    let conditions = Conditions { finds_condition: args.results.condition, ..args.level.conditions() };
+    let run = args.motion.load(conditions)?;
     let ResultArgs { picture, profile, events, spectrum, .. } = &args.results;
     let floors = run.structure.floors().len();
     let is_possible = floors > 0 || profile.is_none() && spectrum.is_none();

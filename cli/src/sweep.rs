@@ -22,6 +22,7 @@ use rocking_sweep::plan::{Case, Plan};
 use rocking_sweep::row_file::{self, Program};
 use rocking_sweep::rows::Sweep;
 use rocking_sweep::thread_pool;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use uuid::Uuid;
 
@@ -104,6 +105,13 @@ fn run_records(
     let text = || {
         let mut out = String::new();
         populations.iter().try_for_each(|population| table::write(&mut out, population, measure))?;
+        let digits = outcomes.iter().filter_map(|of| if let Outcome::Ended(of) = of { of.digits } else { None });
+        let digits = Vec::from_iter(digits);
+        if !digits.is_empty() {
+            let (few, all) = (digits.iter().filter(|digits| **digits < 2).count(), digits.len());
+            let part = 100.0 * few as f64 / all as f64;
+            writeln!(out, "sure digits    fewer than two in {few} of {all} runs ({part:.3} %)")?;
+        }
         Ok(out)
     };
     args.results.print(text, &table::curves(&populations, measure))?;

@@ -29,10 +29,10 @@ from ._calibrate import Calibration, calibrate
 from ._design import Design, design
 from ._ground import Ground
 from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
-from ._results import Advice, Estimate, Peak, Profile, Response, Transition, Transitions, Worst
+from ._results import Advice, Condition, Estimate, Peak, Profile, Response, Transition, Transitions, Worst
 from ._sweep import Fragility, fragility, intensity_at, overturning_map, sweep
 
-__all__ = ["Advice", "Calibration", "Curve", "Design", "Estimate", "Fragility", "Ground", "Peak", "Profile", "Record", "Response", "Run",
+__all__ = ["Advice", "Calibration", "Condition", "Curve", "Design", "Estimate", "Fragility", "Ground", "Peak", "Profile", "Record", "Response", "Run",
            "Structure", "Transition", "Transitions", "Worst", "__version__", "advise", "calibrate", "design", "estimate", "export", "fmu",
            "fragility", "intensity_at", "overturning_map", "pulse", "simulate", "sweep"]
 

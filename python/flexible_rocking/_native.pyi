@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 
 from ._ground import Ground
-from ._results import Advice, Estimate, Peak, Profile, Response, Transitions, Worst
+from ._results import Advice, Condition, Estimate, Peak, Profile, Response, Transitions, Worst
 
 __version__: str
 
@@ -158,6 +158,7 @@ class Run:
     detail: Final[str]
     tolerance: Final[float]
     peaks: Final[dict[str, Peak]]
+    condition: Final[Condition | None]
     residuals: Final[dict[str, float]]
     overturned: Final[bool | None]
     ending: Final[str]
@@ -200,6 +201,7 @@ def simulate(
     duration: float | None = None,
     detail: _Detail = "auto",
     tolerance: float = 1e-9,
+    condition: bool = False,
     **initial: Unpack[_InitialValues],
 ) -> Run: ...
 def advise(

@@ -30,15 +30,16 @@ def extras() -> Iterator[None]:
 class Peak(float):
     """The largest magnitude of a quantity in a run, exact between all instants: a float in `unit`.
 
-    time: the first instant that has it, s.
+    time: the first instant that has it, s. digits: how many of its digits are sure (0 to 14), of a run with condition=True, or None.
     """
 
     time: float
     unit: str
+    digits: int | None
 
-    def __new__(cls, value: float, time: float, unit: str) -> "Peak":
+    def __new__(cls, value: float, time: float, unit: str, digits: int | None = None) -> "Peak":
         peak = super().__new__(cls, value)
-        peak.time, peak.unit = time, unit
+        peak.time, peak.unit, peak.digits = time, unit, digits
         return peak
 
     @property
@@ -46,11 +47,24 @@ class Peak(float):
         """The magnitude as a plain float."""
         return float(self)
 
-    def __getnewargs__(self) -> tuple[float, float, str]:  # type: ignore[override]
-        return self.value, self.time, self.unit
+    def __getnewargs__(self) -> tuple[float, float, str, int | None]:  # type: ignore[override]
+        return self.value, self.time, self.unit, self.digits
 
     def __repr__(self) -> str:
         return f"{self.value} {self.unit} at {self.time} s"
+
+
+class Condition(NamedTuple):
+    """How sure the results of a run are.
+
+    digits: sure digits of the peak of theta or, if the structure overturns, of the time until then, as in the rows of `sweep`; 0 if the
+    run under 1 + 1e-12 times the input ends otherwise. overturning_digits: sure digits of whether it overturns, 13 for more than 12.
+    overturning_change: the least relative change of the input that decides otherwise, of +-1e-14, +-1e-13, ..., +-1e-2, or None.
+    """
+
+    digits: int
+    overturning_digits: int
+    overturning_change: float | None
 
 
 class Transition(NamedTuple):

@@ -31,6 +31,7 @@ def sweep(
     detail: str = "auto",
     tolerance: float = 1e-9,
     duration: float | None = None,
+    condition: bool = False,
     validity: bool = False,
     threads: int = 0,
     path: str | PathLike[str] | None = None,
@@ -41,7 +42,8 @@ def sweep(
 
     structures: one, several, or populations by name, each one or several. Each has one mass or many. records: one, several, or by
     name, each a Record or the path of a file. scale: factors on the accelerations. detail, tolerance, duration and initial values: as in `simulate`.
-    validity: whether the rows have how far each run exceeds the model's limits. threads: 0 is one per core.
+    condition: whether each run is computed again under 1 + 1e-12 times its input; the column "digits" then has how many digits of the peak of
+    theta are sure, of a structure that overturns those of its end. validity: whether the rows have how far each run exceeds the model's limits. threads: 0 is one per core.
 
     intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s), "S_a" (g, at f_fc and zeta_fc, a building's lowest mode), "CAV"
     (m/s), "I_A" (m/s, Arias), "D_5_95" (s, significant duration) or "S_a_avg". S_a_avg (g) is the geometric mean of S_a at ten
@@ -69,7 +71,7 @@ def sweep(
     populations = [(name, [of] if isinstance(of, _native.Structure) else list(of)) for name, of in groups.items()]
     with _told(progress) as tell:
         keys, columns, stopped = _native.sweep(populations, _named(records), scale, intensity, list(contents), path, detail, tolerance, duration,
-                                               initial, validity, threads, tell)
+                                               condition, initial, validity, threads, tell)
     table = pandas.DataFrame({"run": keys} | {name: _values(of) for name, of in columns}, copy=False)
     table.attrs["intensity"] = _native.heading_of(intensity)
     if stopped is not None:

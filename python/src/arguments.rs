@@ -164,10 +164,10 @@ pub fn conditions(
     let mut state = State::default();
     for (name, value) in initial.into_iter().flatten() {
         // Python takes the other arguments out before
-        let known = INITIAL_VALUES.iter().map(|of| of.name).chain(["detail", "tolerance", "duration"]);
+        let known = INITIAL_VALUES.iter().map(|of| of.name).chain(["detail", "tolerance", "duration", "condition"]);
         let place = one_of("argument or initial value", &name, known.zip(0..))?;
         let name = INITIAL_VALUES[place].name;
         state.set(place, if name.starts_with('u') { numbers(name, &value)? } else { vec![number(name, &value)?] });
     }
-    Ok(Conditions { initial: state, detail, tolerance, duration })
+    Ok(Conditions { initial: state, detail, tolerance, duration, ..Conditions::default() })
 }

@@ -14,7 +14,7 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::Limits;
 use rocking::{Detail, Output, Phase};
 use rocking_report::quantities::PrintedNumber;
-use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup, SampledMotion, usual_periods};
+use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup, SampledMotion, Sure, usual_periods};
 use rocking_report::validity::{Beyond, rows};
 use rocking_sweep::plan::Conditions;
 
@@ -74,10 +74,19 @@ impl PyRun {
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
-        for NamedPeak { name, magnitude, unit, time } in &self.found.peaks {
-            named.set_item(name, result(py, "Peak", (*magnitude, *time, *unit))?)?;
+        for NamedPeak { name, magnitude, unit, time, digits } in &self.found.peaks {
+            named.set_item(name, result(py, "Peak", (*magnitude, *time, *unit, *digits))?)?;
         }
         Ok(named)
+    }
+
+    /// How sure the results are, a Condition; None without condition=True. The sure digits of each peak are its `digits`.
+    #[getter]
+    fn condition<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let of = |Sure { digits, overturning_digits, overturning_change }| {
+            result(py, "Condition", (digits, overturning_digits, overturning_change))
+        };
+        self.found.sure.map(of).transpose()
     }
 
     /// What is left at the end on ground that slips and yields, by name. With mu_c: x_end (m), slip_path (m), E_friction (J); with fs or
@@ -270,10 +279,11 @@ impl PyRun {
     /// A pickle is the call of `simulate`.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, ())> {
         let asked = PyDict::new(py);
-        let Conditions { initial, detail, tolerance, duration } = &self.of.conditions;
+        let Conditions { initial, detail, tolerance, duration, finds_condition } = &self.of.conditions;
         asked.set_item("duration", duration)?;
         asked.set_item("detail", detail.name())?;
         asked.set_item("tolerance", tolerance)?;
+        asked.set_item("condition", finds_condition)?;
         for (of, numbers) in INITIAL_VALUES.iter().zip(initial.numbers()).filter(|(_, numbers)| !numbers.is_empty()) {
             let is_one = numbers.len() == 1;
             if is_one { asked.set_item(of.name, numbers[0]) } else { asked.set_item(of.name, numbers) }?;
@@ -291,14 +301,17 @@ impl PyRun {
 /// a number for each floor from below, as u[1], u[2], ... and u_dot[1], ... of a Response. duration (s): the length of the run.
 /// Without a duration, the run ends when the base is down for good or the structure overturns, at the latest 100/p_l after
 /// the record. detail: "auto", "nonlinear" (Eqs 1, 5, 6), "linear" (Eqs 1, 7, 8), "modal" (Eqs 1, 11, 18), "rigid" (Eq 6 with
-/// u = 0), "fixed_base" (Eq 1). tolerance: relative, of the results. Many masses move at every level
+/// u = 0), "fixed_base" (Eq 1). tolerance: relative, of the results. condition: whether 27 more runs find how many digits are sure. Many masses move at every level
 /// but "modal".
 ///
 /// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
 /// Python go on meanwhile; the same inputs give the same bits.
 #[pyfunction]
-#[pyo3(signature = (structure, record=None, *, duration=None, detail=Detail::Auto, tolerance=DEFAULT_TOLERANCE, **initial))]
-#[pyo3(text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, **initial)")]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+#[pyo3(signature = (structure, record=None, *, duration=None, detail=Detail::Auto, tolerance=DEFAULT_TOLERANCE, condition=false, **initial))]
+#[pyo3(
+    text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, condition=False, **initial)"
+)]
 pub fn simulate(
     py: Python<'_>,
     #[pyo3(from_py_with = structure::argument)] structure: Py<PyStructure>,
@@ -306,9 +319,10 @@ pub fn simulate(
     duration: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
+    condition: bool,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<PyRun> {
-    let conditions = conditions(detail, tolerance, duration, initial)?;
+    let conditions = Conditions { finds_condition: condition, ..conditions(detail, tolerance, duration, initial)? };
     conditions.check(&structure.get().of).map_err(refused)?;
     let record = match (record, conditions.duration) {
         (Some(RecordArgument(record)), _) => record,

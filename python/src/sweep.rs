@@ -18,7 +18,7 @@ use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::{Certainty, FragilityCurve};
 use rocking_sweep::map::{Axis, GridPlace, HEADINGS, MAX_REFINEMENTS, Map, MapPoint};
 use rocking_sweep::outcome::{Limit, Measure, of_column};
-use rocking_sweep::plan::{NamedRecord, Plan, Population, measure};
+use rocking_sweep::plan::{Conditions, NamedRecord, Plan, Population, measure};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::row_file::{Program, do_runs, heading, line, name_and_unit};
 use rocking_sweep::rows::{FAILED, RowColumn, Sweep};
@@ -52,6 +52,7 @@ pub fn sweep<'py>(
     #[pyo3(from_py_with = argument::detail)] detail: Detail,
     #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
     duration: Option<&Bound<'_, PyAny>>,
+    condition: bool,
     initial: &Bound<'_, PyDict>,
     validity: bool,
     threads: i64,
@@ -64,7 +65,8 @@ pub fn sweep<'py>(
     };
     let populations = structures.iter().map(population).collect::<PyResult<_>>()?;
     let motions = motions(&records, structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get()))?;
-    let conditions = conditions(detail, tolerance, duration, Some(initial))?;
+    let conditions =
+        Conditions { finds_condition: condition, ..conditions(detail, tolerance, duration, Some(initial))? };
     let plan = py.detach(|| Plan::new(populations, motions, scales, conditions)?.with_contents(&contents));
     let plan = plan.map_err(refused)?;
 

@@ -13,6 +13,7 @@ use rocking::run::residual::Residual;
 use rocking::run::validity::{Findings, Limits};
 use rocking::run::{End, Ending, Finish, RunError, Runs, fall};
 use rocking::{Modes, Output, Phase, Run, State, Structure, Transition, TransitionKind, Watch};
+use rocking_sweep::condition::{self, PERTURBATION, TRIED, condition, digits, digits_of_outcome, digits_of_run};
 use rocking_sweep::{plan::Conditions, with_run};
 use serde::Serialize;
 use std::sync::Arc;
@@ -79,6 +80,9 @@ pub struct RunReport {
     /// Right-hand-side evaluations that the search for the peaks took, if it counts them.
     #[serde(skip)]
     pub(crate) for_peaks: Option<u64>,
+    /// How sure the results are, if the condition is found.
+    #[serde(flatten)]
+    pub sure: Option<Sure>,
     /// The findings about the model, if limits were given.
     #[serde(skip)]
     pub findings: Option<Findings>,
@@ -93,6 +97,20 @@ pub struct NamedPeak {
     pub magnitude: f64,
     pub unit: &'static str,
     pub time: f64,
+    /// Sure digits, if the condition is found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub digits: Option<u8>,
+}
+
+/// How sure the results of a run are.
+#[derive(Clone, Copy, Serialize)]
+pub struct Sure {
+    /// Sure digits of the peak of θ or, if the structure overturns, of the time until then, as in the rows of a sweep.
+    pub digits: u8,
+    /// Sure digits of whether the structure overturns.
+    pub overturning_digits: u8,
+    /// The least relative change of the input, of those tried, that decides otherwise.
+    pub overturning_change: Option<f64>,
 }
 
 /// Energy (J) that the dissipators took until the end of a run, and the rotation (rad) that is left.
@@ -147,9 +165,37 @@ pub trait Watcher: Watch<f64> + Watch<Modes> + Clone {
 impl Watcher for () {}
 
 impl RunSetup {
-    /// Follows the motion to its end, and finds its exact peaks; with `limits`, how far it breaks the assumptions of the model, too.
+    /// Follows the motion to its end, and finds its exact peaks; with `limits`, how far it breaks the assumptions of the model, too. If the
+    /// conditions say so, changed runs find how many digits of the results are sure.
     pub fn found(&self, limits: Option<Limits>, watch: &mut impl Watcher) -> Result<RunReport, RunError> {
-        with_run!(self.conditions, self.structure, &self.ground, run => found(&run, limits, watch))?
+        let mut report = with_run!(self.conditions, self.structure, &self.ground, run => found(&run, limits, watch))??;
+        if self.conditions.finds_condition {
+            self.assure(&mut report, &mut watch.clone());
+        }
+        Ok(report)
+    }
+
+    /// Finds how many digits of the results of the run in the `report` are sure: none if the changed run fails.
+    fn assure(&self, report: &mut RunReport, watch: &mut impl Watcher) {
+        let changed = |change| RunSetup {
+            structure: self.structure.clone(),
+            ground: Arc::new(condition::changed(&self.ground, change)),
+            conditions: self.conditions.changed(change),
+        };
+        let found = changed(PERTURBATION).found(None, watch).ok();
+        for (at, peak) in report.peaks.iter_mut().enumerate() {
+            let of = |found: &RunReport| digits(condition(peak.magnitude, found.peaks[at].magnitude));
+            peak.digits = Some(found.as_ref().map_or(0, of));
+        }
+        let of_run =
+            |of: &RunReport| (of.ending, of.end - of.start, of.peak("theta").map_or(0.0, |peak| peak.magnitude));
+        let digits = found.map_or(0, |found| digits_of_run([of_run(report), of_run(&found)]));
+        let change = TRIED.into_iter().flat_map(|change| [change, -change]).find(|change| {
+            let RunSetup { structure, ground, conditions } = changed(*change);
+            let end = with_run!(conditions, structure, &ground, run => run.follow(watch).map(|end| end.ending));
+            !matches!(end, Ok(Ok(ending)) if ending.overturned() == report.overturned)
+        });
+        report.sure = Some(Sure { digits, overturning_digits: digits_of_outcome(change), overturning_change: change });
     }
 
     /// The results of the same structure on a fixed base, from rest under the same ground motion until `end` (s).
@@ -301,7 +347,7 @@ impl NamedPeak {
     }
 
     fn new(name: impl Into<String>, unit: &'static str, Peak { magnitude, time }: Peak) -> NamedPeak {
-        NamedPeak { name: name.into(), magnitude, unit, time }
+        NamedPeak { name: name.into(), magnitude, unit, time, digits: None }
     }
 }
 
@@ -352,6 +398,7 @@ fn results<Q: Runs>(run: &Run<Q>, found: &fall::RunResult<Q>, transitions: &[Tra
         events: transitions.iter().map(event).collect(),
         phase: motion.phase,
         for_peaks: structure.one().map(|_| peaks.evaluations()),
+        sure: None,
         findings: None,
     }
 }

@@ -1,6 +1,6 @@
 //! The summary of a run.
 use crate::quantities::{NamedValue, of_motion};
-use crate::run::{Dissipated, NamedPeak, OF_FLOOR, RunReport, RunSetup};
+use crate::run::{Dissipated, NamedPeak, OF_FLOOR, RunReport, RunSetup, Sure};
 use crate::validity;
 use rocking::digits::significant;
 use rocking::run::peaks::Peak;
@@ -33,7 +33,8 @@ impl RunSetup {
     pub fn text(&self, found: &RunReport, limits: &Limits) -> Result<String, fmt::Error> {
         let mut out = String::new();
         let base = self.structure.base();
-        for NamedPeak { name, magnitude, unit, time } in found.peaks.iter().filter(|peak| !peak.name.ends_with(']')) {
+        for NamedPeak { name, magnitude, unit, time, .. } in found.peaks.iter().filter(|peak| !peak.name.ends_with(']'))
+        {
             let (per_unit, unit) = of_motion(*magnitude, unit, base.g);
             let (magnitude, time) = (significant(magnitude / per_unit), instant(*time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
@@ -96,6 +97,7 @@ impl RunSetup {
             (_, Ending::AtRest | Ending::Overturned) => "no".into(),
         };
         writeln!(out, "overturned     {overturned}")?;
+        found.sure.iter().try_for_each(|sure| writeln!(out, "sure digits    {}", sentence(found, sure)))?;
         let of_peaks = found.for_peaks.map_or(String::new(), |more| format!("; {more} more for peaks"));
         writeln!(out, "work           {} steps, {} evaluations{of_peaks}", found.work.steps, found.work.evaluations)?;
         if let Some(findings) = &found.findings {
@@ -107,6 +109,18 @@ impl RunSetup {
 
 /// Way of the base over B beyond which a tie leans.
 const LEANING: f64 = 0.01;
+
+/// The sure digits of the run, of its least sure peak and of the outcome, in a sentence.
+fn sentence(found: &RunReport, &Sure { digits, overturning_digits, overturning_change }: &Sure) -> String {
+    let of_run = if found.ending == Ending::Overturned { "the instant of overturning" } else { "theta" };
+    let least = found.peaks.iter().filter_map(|peak| peak.digits).min().unwrap_or(0);
+    let decides = match overturning_change {
+        None => "or more: no change of the input tried, up to 1 %, decides otherwise".into(),
+        Some(change) => format!("because the input times (1{change:+e}) decides otherwise"),
+    };
+    let what = if found.overturned.is_some() { "whether it overturns" } else { "that it still rocks" };
+    format!("{of_run} {digits}, each peak at least {least}; {what} {overturning_digits} {decides}")
+}
 
 /// An instant (s) to six digits or to 10 us, whichever is finer.
 pub fn instant(time: f64) -> String {

@@ -2,6 +2,7 @@
 
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
+pub mod condition;
 pub mod design;
 pub mod exceedances;
 pub mod fragility;

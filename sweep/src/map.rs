@@ -5,6 +5,7 @@
 //! in squares between neighbouring points that differ in [`Class`], and from there along the boundary wherever the finer
 //! points show that it goes.
 
+use crate::condition::{PERTURBATION, changed, condition, paired};
 use crate::plan::Conditions;
 use crate::pulse::{Pulse, units_of};
 use crate::{Refused, ensure};
@@ -25,9 +26,6 @@ pub const MAX_REFINEMENTS: u32 = 8;
 
 /// Most points of a grid.
 pub const MAX_POINTS: usize = 10_000_000;
-
-/// Relative change of the amplitude by which the condition is found.
-pub const PERTURBATION: f64 = 1e-12;
 
 /// Values that a pulse's frequency, or its amplitude, goes through.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,12 +190,11 @@ impl MapPoint {
 
     /// How much it differs from `other`, whose amplitude is larger by [`PERTURBATION`].
     fn condition(&self, other: &MapPoint) -> f64 {
-        let change = |of: fn(&MapPoint) -> f64| (of(other) - of(self)).abs() / of(self) / PERTURBATION;
         match self.fate {
             _ if self.class() != other.class() => f64::INFINITY,
             Fate::NoUplift | Fate::Failed => 0.0,
-            Fate::Overturns => change(|point| point.end),
-            Fate::Stands | Fate::StillRocking => change(|point| point.theta),
+            Fate::Overturns => condition(self.end, other.end),
+            Fate::Stands | Fate::StillRocking => condition(self.theta, other.theta),
         }
     }
 }
@@ -285,22 +282,11 @@ impl Map {
         let mut grounds: Vec<_> = places.iter().map(|place| self.ground(*place)).collect();
         if self.finds_condition {
             grounds.extend_from_within(..);
-            let changed = grounds.iter_mut().skip(places.len());
-            changed.for_each(|ground| *ground = ground.clone().multiplied(1.0 + PERTURBATION));
+            grounds.iter_mut().skip(places.len()).for_each(|ground| *ground = changed(ground, PERTURBATION));
         }
-        let mut first = vec![None; places.len()];
-        let see = |number: usize, point| {
-            let at = number % places.len();
-            if !self.finds_condition {
-                return done(at, point);
-            }
-            let Some(other) = first[at].take() else {
-                first[at] = Some(point);
-                return true;
-            };
-            let (point, other) = if number == at { (point, other) } else { (other, point) };
-            done(at, MapPoint { condition: Some(point.condition(&other)), ..point })
-        };
+        let see = paired(places.len(), self.finds_condition, |at, point: MapPoint, changed| {
+            done(at, MapPoint { condition: changed.map(|changed| point.condition(&changed)), ..point })
+        });
         match self.structure.of_one_mode() {
             Some(structure) => self.points::<f64>(&structure, &grounds, see),
             None => self.points::<Modes>(&self.structure, &grounds, see),

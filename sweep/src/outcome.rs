@@ -41,6 +41,8 @@ pub struct Summary {
     pub steps: u64,
     /// Right-hand-side evaluations.
     pub evaluations: u64,
+    /// Sure digits of the run, if they are found: [`digits_of_run`](crate::condition::digits_of_run).
+    pub digits: Option<u8>,
 }
 
 /// Magnitudes in place if they are of one mass without ties: blocks of memory that outlive a run slow the next runs down.
@@ -112,6 +114,11 @@ impl MeasurePlaces {
         has_floor
     }
 
+    /// The place of the largest rotation as a fraction of the slenderness angle.
+    pub(crate) fn rotation(&self) -> usize {
+        self.places[self.outputs.len()]
+    }
+
     /// Whether the measures of `structure` are these.
     pub(crate) fn is_of(&self, structure: &Structure) -> bool {
         self.is_of_one == structure.is_one_mass() && self.outputs == Output::with_peak(structure)
@@ -141,7 +148,7 @@ impl Outcome {
     #[cfg(test)]
     pub(crate) fn ended(ending: Ending, peak: f64) -> Outcome {
         let peaks = smallvec![peak; Output::PEAKS_OF_ONE.len() + 1];
-        Outcome::Ended(Summary { ending, end: 1.0, peaks, transitions: 0, steps: 0, evaluations: 0 })
+        Outcome::Ended(Summary { ending, end: 1.0, peaks, transitions: 0, steps: 0, evaluations: 0, digits: None })
     }
 
     /// Outcome of a `run` with this result: its peaks are at the places of `layout` among so many `measures`.
@@ -179,6 +186,7 @@ impl Outcome {
             transitions: finish.motion.transitions,
             steps: finish.motion.work.steps,
             evaluations: finish.motion.work.evaluations,
+            digits: None,
         })
     }
 

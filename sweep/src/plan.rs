@@ -1,6 +1,7 @@
 //! Many runs: every structure of some populations under every ground motion at every scale factor.
 
-use crate::outcome::{self, Measure, MeasurePlaces, Outcome};
+use crate::condition::{PERTURBATION, changed, digits_of_run, paired};
+use crate::outcome::{self, Measure, MeasurePlaces, Outcome, Summary};
 use crate::{Refused, ensure};
 use rocking::digits::with_unit;
 use rocking::engine::{DEFAULT_TOLERANCE, Settings};
@@ -116,6 +117,8 @@ pub struct Conditions {
     pub tolerance: f64,
     /// Time from the first sample to the end of a run, s; without it a run goes on until nothing more can happen.
     pub duration: Option<f64>,
+    /// Whether the sure digits of the results are found, by runs under a [`changed`] input.
+    pub finds_condition: bool,
 }
 
 /// `$do` with `$run`, the library's run of one mass or of many of `$structure` under `$ground` and `$conditions`.
@@ -136,6 +139,7 @@ impl Default for Conditions {
             detail: Detail::default(),
             tolerance: DEFAULT_TOLERANCE,
             duration: None,
+            finds_condition: false,
         }
     }
 }
@@ -189,6 +193,8 @@ pub struct Case<'a> {
     pub motion: &'a NamedRecord,
     /// Factor on its acceleration, beside its own.
     pub scale: f64,
+    /// Relative change of the input.
+    change: f64,
     /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
     /// structure's.
     pub group: usize,
@@ -341,6 +347,7 @@ impl Plan {
         check_names("ground motions", motions.iter().map(|of| &of.name))?;
         for base in populations.iter_mut().flat_map(|of| &mut of.bases) {
             conditions.check(base)?;
+            conditions.changed(PERTURBATION).check(base)?;
             *base = base.at(conditions.detail);
         }
         let (measures, layouts, spectral, doubts, widest) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), 0.0);
@@ -416,7 +423,7 @@ impl Plan {
             let (_, made) = last.insert(made.unwrap_or_else(|| (number, self.member(number))));
             let (population, member, structure, layout) = made.clone();
             let (group, motion) = (if self.motions.len() > 1 { motion } else { pair }, &self.motions[motion]);
-            Case { plan: self, index, population, member, structure, layout, motion, scale, group }
+            Case { plan: self, index, population, member, structure, layout, motion, scale, change: 0.0, group }
         })
     }
 
@@ -443,40 +450,49 @@ impl Plan {
         validity: bool,
         mut done: impl FnMut(&Case, Outcome, Option<Findings>) -> bool,
     ) {
-        let cases: Vec<_> = self.cases_of(indices.iter().copied()).collect();
+        let (mut cases, finds_condition) =
+            (Vec::from_iter(self.cases_of(indices.iter().copied())), self.conditions.finds_condition);
+        if finds_condition {
+            let changed = cases.clone().into_iter().map(|case| Case { change: PERTURBATION, ..case });
+            cases.extend(changed);
+        }
+        let mut done = paired(indices.len(), finds_condition, |at, (outcome, findings), changed| {
+            let case: &Case = &cases[at];
+            done(case, case.sure(outcome, changed.map(|(outcome, _)| outcome)), findings)
+        });
         if validity {
-            cases.iter().all(|case| {
+            cases.iter().enumerate().all(|(number, case)| {
                 let (outcome, findings) = case.judged();
-                done(case, outcome, Some(findings))
+                done(number, (outcome, Some(findings)))
             });
             return;
         }
         let (mut of_one, mut of_many) = (Vec::new(), Vec::new());
-        for case in &cases {
+        for (number, case) in cases.iter().enumerate() {
             match case.structure.of_one_mode() {
-                Some(structure) => of_one.push((case, structure)),
-                None => of_many.push((case, case.structure.clone())),
+                Some(structure) => of_one.push(((number, case), structure)),
+                None => of_many.push(((number, case), case.structure.clone())),
             }
         }
-        if together::<f64>(self, of_one, &mut done) {
-            together::<Modes>(self, of_many, &mut done);
+        let mut done = |number, outcome| done(number, (outcome, None));
+        if together::<f64>(of_one, &mut done) {
+            together::<Modes>(of_many, &mut done);
         }
     }
 }
 
-/// Does these cases of `plan` together, and tells `done` the outcome of each as it ends. Returns whether to go on.
-fn together<Q: Runs>(
-    plan: &Plan,
-    cases: Vec<(&Case, Structure)>,
-    done: &mut impl FnMut(&Case, Outcome, Option<Findings>) -> bool,
-) -> bool {
-    let grounds: Vec<_> = cases.iter().map(|(case, _)| case.ground()).collect();
+/// Does these cases together, each with its number, and tells `done` the outcome of each as it ends. Returns whether to go on.
+fn together<Q: Runs>(cases: Vec<((usize, &Case), Structure)>, done: &mut impl FnMut(usize, Outcome) -> bool) -> bool {
+    let grounds: Vec<_> = cases.iter().map(|((_, case), _)| case.ground()).collect();
     let (cases, structures): (Vec<_>, Vec<_>) = cases.into_iter().unzip();
-    let run = |(structure, ground)| plan.conditions.run::<Q>(structure, ground).expect(CHECKED);
-    let runs: Vec<_> = structures.into_iter().zip(&grounds).map(run).collect();
+    let run = |((structure, ground), (_, case)): (_, &(_, &Case))| {
+        case.conditions().run::<Q>(structure, ground).expect(CHECKED)
+    };
+    let runs: Vec<_> = structures.into_iter().zip(&grounds).zip(&cases).map(run).collect();
     let mut goes_on = true;
     found_each(&runs, &mut |at, found| {
-        goes_on = done(cases[at], cases[at].outcome_of(&runs[at], found), None);
+        let (number, case) = cases[at];
+        goes_on = done(number, case.outcome_of(&runs[at], found));
         goes_on
     });
     goes_on
@@ -485,13 +501,13 @@ fn together<Q: Runs>(
 impl Case<'_> {
     /// Does it.
     pub fn outcome(&self) -> Outcome {
-        let found = with_run!(self.plan.conditions, self.structure, &self.ground(), run => self.outcome_of(&run, run.found(&mut ())));
+        let found = with_run!(self.conditions(), self.structure, &self.ground(), run => self.outcome_of(&run, run.found(&mut ())));
         found.expect(CHECKED)
     }
 
     /// Does it, and finds how far it breaks the assumptions of the model.
     fn judged(&self) -> (Outcome, Findings) {
-        let judged = with_run!(self.plan.conditions, self.structure, &self.ground(), run => {
+        let judged = with_run!(self.conditions(), self.structure, &self.ground(), run => {
             let mut validity = run.validity_watch(Limits::default()).expect(CHECKED);
             (self.outcome_of(&run, run.judged(&mut validity, &mut ())), *validity.found())
         });
@@ -503,7 +519,23 @@ impl Case<'_> {
     }
 
     fn ground(&self) -> Record {
-        self.motion.record.clone().multiplied(self.factor())
+        changed(&self.motion.record.clone().multiplied(self.factor()), self.change)
+    }
+
+    fn conditions(&self) -> Conditions {
+        self.plan.conditions.changed(self.change)
+    }
+
+    /// The `outcome` with its sure digits, if there is the outcome of the `changed` run.
+    fn sure(&self, mut outcome: Outcome, changed: Option<Outcome>) -> Outcome {
+        let of_run = |of: &Summary| (of.ending, of.end - self.motion.record.start(), of.peaks[self.layout.rotation()]);
+        if let (Outcome::Ended(own), Some(changed)) = (&mut outcome, changed) {
+            own.digits = Some(match &changed {
+                Outcome::Ended(changed) => digits_of_run([of_run(own), of_run(changed)]),
+                Outcome::Failed { .. } => 0,
+            });
+        }
+        outcome
     }
 
     /// How strong the ground motion is, in the unit of `measure`.
@@ -599,7 +631,7 @@ fn check_list(name: &str, values: &[f64]) -> Result<(), Refused> {
 mod tests {
     use super::*;
     use crate::exceedances::count;
-    use crate::outcome::{Limit, Summary};
+    use crate::outcome::Limit;
     use rocking::estimates::response_spectrum::{FloorContents, floor_spectra};
     use rocking::run::{End, Ending};
     use rocking::structure::description::{Damping, Storey};
@@ -705,7 +737,8 @@ mod tests {
     #[test]
     fn conditions_are_those_of_every_run() {
         let initial = State { theta: 0.05, u: vec![1e-3], ..State::default() };
-        let conditions = Conditions { initial, detail: Detail::Linear, tolerance: 1e-6, duration: Some(0.7) };
+        let (detail, duration) = (Detail::Linear, Some(0.7));
+        let conditions = Conditions { initial, detail, tolerance: 1e-6, duration, ..Conditions::default() };
         let pier = Population::new("pier", structure(Parameters::MCMANUS));
         let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5], conditions.clone()).unwrap();
         let ground = pulse().record.multiplied(0.5);

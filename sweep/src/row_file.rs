@@ -114,7 +114,7 @@ impl RowFile {
             let mut rows = ReaderBuilder::new().from_reader(&content[..length]);
             ensure!(
                 rows.headers()? == headings,
-                "line 1 is not the headings of rows of this sweep, with its intensity, limits and --validity, in this version: name another file"
+                "line 1 is not the headings of rows of this sweep, with its intensity, limits, condition and --validity, in this version: name another file"
             );
             for row in rows.records() {
                 let row = row?;

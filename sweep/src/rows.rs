@@ -211,7 +211,7 @@ impl<'a> Sweep<'a> {
 
     /// The other cells of the row of a run that is done.
     fn of_run<'b>(&'b self, case: &Case<'b>, RunDone { outcome, beyond }: &'b RunDone) -> Vec<Cell<'b>> {
-        let Conditions { initial, detail, tolerance, duration } = &self.plan.conditions;
+        let Conditions { initial, detail, tolerance, duration, finds_condition } = &self.plan.conditions;
         let mut row = Vec::with_capacity(64);
         row.extend([Cell::Text(&case.motion.name), Cell::Digest(self.digests[case.motion_number()])]);
         row.extend([case.motion.scale, case.scale].map(Cell::Number));
@@ -226,12 +226,13 @@ impl<'a> Sweep<'a> {
             Outcome::Ended(of) => {
                 row.extend([Cell::Ending(of.ending), Cell::Number(of.end)]);
                 row.extend(of.peaks.iter().copied().map(Cell::Number));
-                row.extend([of.transitions, of.steps, of.evaluations].map(Cell::Count));
+                let counts = [of.transitions, of.steps, of.evaluations].into_iter().chain(of.digits.map(u64::from));
+                row.extend(counts.map(Cell::Count));
                 Cell::Empty
             }
             Outcome::Failed { time, reason } => {
                 row.extend([Cell::Text(FAILED), Cell::Number(*time)]);
-                row.resize(row.len() + self.plan.measures.len() + 3, Cell::Empty);
+                row.resize(row.len() + self.plan.measures.len() + 3 + usize::from(*finds_condition), Cell::Empty);
                 Cell::Text(reason)
             }
         };
@@ -336,6 +337,7 @@ fn open(path: &Path, plan: &Plan, validity: bool) -> anyhow::Result<(RowFile, Kn
     let headings = headings(plan, validity);
     let at = |heading: &str| headings.iter().position(|found| found == heading).expect("it is one of them");
     let (ending, counts, after, reason) = (at("ending"), at("transitions"), at("evaluations") + 1, at("reason"));
+    let with_digits = after + usize::from(plan.conditions.finds_condition);
     RowFile::open(path, &headings, |row| {
         if &row[ending] == FAILED {
             let outcome = Outcome::Failed { time: row[ending + 1].parse()?, reason: row[reason].into() };
@@ -344,8 +346,9 @@ fn open(path: &Path, plan: &Plan, validity: bool) -> anyhow::Result<(RowFile, Kn
         let peaks = row.iter().take(counts).skip(ending + 2).map(str::parse).collect::<Result<_, _>>()?;
         let others: StringRecord = row.iter().skip(ending).take(2).chain(row.iter().take(after).skip(counts)).collect();
         let (ending, end, transitions, steps, evaluations) = others.deserialize(None)?;
-        let summary = Summary { ending, end, peaks, transitions, steps, evaluations };
-        let beyond = row.iter().take(reason).skip(after).filter(|number| !number.is_empty()).map(str::parse);
+        let digits = row.iter().take(with_digits).skip(after).map(str::parse).next().transpose()?;
+        let summary = Summary { ending, end, peaks, transitions, steps, evaluations, digits };
+        let beyond = row.iter().take(reason).skip(with_digits).filter(|number| !number.is_empty()).map(str::parse);
         Ok(RunDone { outcome: Outcome::Ended(summary), beyond: beyond.collect::<Result<_, _>>()? })
     })
 }
@@ -357,7 +360,7 @@ pub fn of_numbers(numbers: &[Measure]) -> Vec<String> {
 }
 
 /// Headings of the rows, with those of the check of validity if it is asked for.
-fn headings(Plan { measures, numbers, .. }: &Plan, validity: bool) -> Vec<String> {
+fn headings(Plan { measures, numbers, conditions, .. }: &Plan, validity: bool) -> Vec<String> {
     let intensities = IntensityMeasure::COLUMNS.map(|measure| heading(&measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
     let peaks = measures.iter().map(|(name, unit)| heading(&column(name), unit)).collect();
@@ -373,6 +376,7 @@ fn headings(Plan { measures, numbers, .. }: &Plan, validity: bool) -> Vec<String
         fixed(&["ending", "end[s]"]),
         peaks,
         fixed(&["transitions", "steps", "evaluations"]),
+        fixed(if conditions.finds_condition { &["digits"] } else { &[] }),
         beyond.filter(|_| validity).collect(),
         fixed(&["reason"]),
     ]

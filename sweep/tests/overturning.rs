@@ -1,12 +1,15 @@
 //! Overturning under pulses: maps that refine, conditions.
 
-use rocking::run::Run;
+use rocking::run::{Ending, Run};
 use rocking::structure::description::{Damping, Storey};
 use rocking::structure::natural_quantities::Numbers;
 use rocking::{Detail, OneMass, Parameters, Structure};
-use rocking_sweep::map::{Axis, Fate, GridPlace, Map, MapPoint, nearest};
+use rocking_sweep::condition::digits;
+use rocking_sweep::map::{Axis, Fate, GridPlace, Map, MapPoint, PARTS, nearest};
+use rocking_sweep::outcome::{Outcome, Summary};
+use rocking_sweep::plan::{Conditions, NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// A map of McManus at a level that costs little: some of all classes that a sine has.
 fn map(count: usize, finds_condition: bool) -> Map {
@@ -38,7 +41,7 @@ fn a_refined_map_has_the_boundary_of_a_fine_grid() {
     let (coarse, fine) = (map(17, false), map(33, false));
     let (refined, all) = (complete(&coarse, 1), complete(&fine, 0));
     assert!(refined.len() < all.len() * 3 / 4, "{} of {}", refined.len(), all.len());
-    let classes: std::collections::BTreeSet<_> = all.values().map(MapPoint::class).collect();
+    let classes: BTreeSet<_> = all.values().map(MapPoint::class).collect();
     assert!(classes.len() >= 4, "{classes:?}");
     let mut differing = 0;
     for (place, point) in &all {
@@ -66,6 +69,53 @@ fn conditions_are_of_the_order_of_the_change() {
             _ => assert!((1e-3..1e5).contains(&condition), "{place:?}: {condition}"),
         }
     }
+}
+
+/// The map's structure under each of the `pulses`, with sure digits.
+fn digits_under(map: &Map, pulses: &[Pulse], tolerance: f64) -> Vec<Summary> {
+    let named = |(i, pulse): (usize, &Pulse)| NamedRecord::new(i.to_string(), pulse.record().unwrap(), 1.0).unwrap();
+    let conditions = Conditions { detail: map.detail, tolerance, finds_condition: true, ..Conditions::default() };
+    let pier = vec![Population::new("pier", map.structure.clone())];
+    let plan = Plan::new(pier, pulses.iter().enumerate().map(named).collect(), vec![1.0], conditions).unwrap();
+    let mut all = vec![None; plan.len()];
+    plan.each_outcome(&Vec::from_iter(0..plan.len()), false, |case, outcome, _| {
+        let Outcome::Ended(summary) = outcome else { panic!("{outcome:?}") };
+        all[case.index] = Some(summary);
+        true
+    });
+    all.into_iter().flatten().collect()
+}
+
+#[test]
+fn a_run_has_the_digits_that_the_condition_of_its_point_on_a_map_leaves() {
+    let map = map(9, true);
+    let map = Map { pulse: Pulse { cycles: 20.0, ..map.pulse }, detail: Detail::Auto, ..map };
+    let (places, points): (Vec<_>, Vec<_>) = complete(&map, 0).into_iter().unzip();
+    let runs = digits_under(&map, &Vec::from_iter(places.iter().map(|place| map.pulse(*place))), map.tolerance);
+    let mut found = BTreeSet::new();
+    for (point, run) in points.iter().zip(&runs) {
+        assert_eq!(run.digits, Some(digits(point.condition.unwrap())), "{point:?}");
+        found.insert((run.ending == Ending::Overturned, run.digits));
+    }
+    assert!(found.len() >= 8, "{found:?}");
+}
+
+/// At a tighter tolerance the engine takes other steps and rounds otherwise: what it rounds stays within the last sure digit.
+#[test]
+fn long_rocking_leaves_fewer_digits_and_those_are_true() {
+    let map = map(5, false).computed_by(Detail::Auto, 1e-9, false).unwrap();
+    let fewest = [1.0, 40.0].map(|cycles| {
+        let at = |i: u32| GridPlace { amplitude: PARTS * (i % 20) / 5, frequency: PARTS * (i / 20) / 5 };
+        let pulses = Vec::from_iter((0..400).map(|i| Pulse { cycles, ..map.pulse(at(i)) }));
+        let [usual, tight] = [1e-9, 1e-13].map(|tolerance| digits_under(&map, &pulses, tolerance));
+        for (usual, tight) in usual.iter().zip(&tight).filter(|(usual, _)| usual.transitions > 0) {
+            let result = |of: &Summary| if usual.ending == Ending::Overturned { of.end } else { of.peaks[0] };
+            let change = (result(tight) / result(usual) - 1.0).abs();
+            assert!(change < 2.0 * 0.1_f64.powi(usual.digits.unwrap().into()), "{change} {usual:?}");
+        }
+        usual.iter().filter_map(|of| of.digits).min().unwrap()
+    });
+    assert!(fewest[0] >= 12 && fewest[1] <= 7, "{fewest:?}");
 }
 
 /// Each point of a map of three storeys is the run of its pulse.

@@ -289,7 +289,8 @@ impl Fields {
         let u = self.text("u_0").unwrap_or("0").split(',').map(of_floor).collect::<Result<_, _>>()?;
         let initial = State { theta: self.number("theta_0")?, u, ..State::default() };
         let duration = (self.kind() == "free").then(|| self.number("duration")).transpose()?;
-        Ok(Conditions { initial, detail: self.detail()?, tolerance: self.tolerance()?, duration })
+        let (detail, tolerance) = (self.detail()?, self.tolerance()?);
+        Ok(Conditions { initial, detail, tolerance, duration, finds_condition: false })
     }
 
     pub fn detail(&self) -> Result<Detail, String> {

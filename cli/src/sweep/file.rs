@@ -58,6 +58,8 @@ struct SweepFile {
     /// From a record's first sample to the end of a run, s.
     duration: Option<f64>,
     #[serde(default)]
+    condition: bool,
+    #[serde(default)]
     initial: InitialArgs,
     intensity: Option<String>,
     /// Oscillators on floors, by the names of their S_a.
@@ -193,9 +195,11 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<SweepContent
         let all_warn = |warnings| few(warnings, "warnings").iter().for_each(|warning| warning!("{warning}"));
         all_warn(warnings);
         let (tolerance, duration) = (file.tolerance.unwrap_or(DEFAULT_TOLERANCE), file.duration);
-        let conditions = Conditions { initial: file.initial.state(), detail: file.detail, tolerance, duration };
+        let (initial, detail, finds_condition) = (file.initial.state(), file.detail, file.condition);
+        let conditions = Conditions { initial, detail, tolerance, duration, finds_condition };
         if let Some(sought) = file.design {
             let is_alone = grids.len() == 1 && grids[0].vary.is_empty() && file.limits.is_empty();
+            ensure!(!finds_condition, "condition = true is for `rocking-fmu sweep`");
             ensure!(is_alone, "design needs one of [[structures]], without vary and limits: they stand in [design]");
             let design = Design { sought, structure: base, motions: motions?, scales, conditions };
             return Ok(SweepContent::Design(Box::new(design), records));

@@ -70,7 +70,7 @@ def test_the_stub_has_the_names_and_defaults_of_the_module():
     assert typed["_Numbers"] == known(refused)
     with pytest.raises(ValueError) as refused:
         fr.simulate(fr.Structure(preset="evison"), duration=1, none=1)
-    assert [*typed["_InitialValues"], "detail", "tolerance", "duration"] == known(refused)
+    assert [*typed["_InitialValues"], "detail", "tolerance", "duration", "condition"] == known(refused)
     units = {of.target.id: unit.value.value for each in stub if isinstance(each, ast.ClassDef) for of, unit in zip(each.body, each.body[1:])
              if isinstance(of, ast.AnnAssign) and isinstance(unit, ast.Expr) and isinstance(unit.value, ast.Constant)}
     for names, documented in (("_Numbers", fr.Structure), ("_InitialValues", fr.simulate)):
@@ -93,6 +93,52 @@ def test_a_run_prints_what_the_command_line_prints(run, said):
     validity = json.loads(said("simulate", "--record", RECORD, *OPTIONS, "--format", "json"))["validity"]
     assert {name: of.limit for name, of in run.validity.items()} == {of["name"]: of["limit"] for of in validity}
     assert run.validity_within(friction=0.7)["mu_required"].limit == 0.7
+
+
+def test_sure_digits_are_the_same_at_each_door(said, tmp_path, ground):
+    pier = fr.Structure(preset="mcmanus")
+    run = fr.simulate(pier, ground, condition=True)
+    told = json.loads(said("simulate", "--record", RECORD, *OPTIONS, "--condition", "--format", "json"))
+    assert {of["name"]: of["digits"] for of in told["peaks"]} == {name: peak.digits for name, peak in run.peaks.items()}
+    assert run.condition == (told["digits"], told["overturning_digits"], told["overturning_change"])
+    assert run.condition.digits == run.peaks["theta"].digits
+    assert said("simulate", "--record", RECORD, *OPTIONS, "--condition").splitlines()[1:] == str(run).splitlines()[1:]
+    same = pickle.loads(pickle.dumps(run))
+    assert (same, same.condition, same.peaks["u"].digits) == (run, run.condition, run.peaks["u"].digits)
+    usual = fr.simulate(pier, ground)
+    assert (usual.condition, usual.peaks["u"].digits, usual.peaks) == (None, None, run.peaks)
+    ground.write(tmp_path / "ground.csv")
+    (tmp_path / "sweep.toml").write_text("records = ['ground.csv']\ncondition = true\n[[structures]]\nname = 'structures'\npreset = 'mcmanus'\n")
+    assert "sure digits    fewer than two in 0 of 1 runs (0.000 %)\n" in said("sweep", "sweep.toml", "-o", "rows.csv")
+    for validity in (False, True):
+        table = fr.sweep(pier, {"ground.csv": fr.Record.read(tmp_path / "ground.csv")}, condition=True, validity=validity)
+        assert table["digits"].tolist() == pd.read_csv(tmp_path / "rows.csv")["digits"].tolist() == [run.condition.digits]
+
+
+def test_the_change_that_decides_about_overturning_is_the_least_of_those_tried():
+    pier, found = fr.Structure(preset="mcmanus"), set()
+    for amplitude in np.linspace(0.3, 0.6, 40):
+        ground = fr.pulse("sine", amplitude=amplitude, frequency=1, cycles=8)
+        run = fr.simulate(pier, ground, condition=True)
+        overturned = lambda change: fr.simulate(pier, ground.scaled(1 + change)).overturned
+        change = run.condition.overturning_change
+        tried = [sign * 10.0 ** -decade for decade in range(14, 1, -1) for sign in (1, -1)]
+        assert [of for of in tried if overturned(of) != run.overturned][:1] == ([] if change is None else [pytest.approx(change)])
+        found.add(run.condition.overturning_digits)
+        assert run.condition.overturning_digits == (13 if change is None else 14 + round(np.log10(abs(change))))
+    assert {9, 10, 11, 13} <= found
+
+
+def test_initial_values_and_a_force_are_changed_with_the_ground():
+    pier = fr.Structure(preset="mcmanus")
+    for below, decides in ((3e-6, 1e-5), (3e-4, 1e-3)):  # a rigid block at rest falls from alpha_cg on
+        run = fr.simulate(pier, duration=20, theta_0=pier.alpha_cg * (1 - below), detail="rigid", condition=True)
+        assert (run.overturned, run.condition.overturning_change) == (False, decides)
+    pushed = lambda F_t: fr.simulate(pier, fr.Record(1, [0, 0]).with_force([0, 0.5, 1], [0, F_t, 0]), condition=True)
+    low, high = 100.0, 1e4
+    while high > low * (1 + 1e-5):
+        low, high = (low, middle) if pushed(middle := (low * high) ** 0.5).overturned else (middle, high)
+    assert not pushed(low).overturned and 0 < pushed(low).condition.overturning_change <= 1e-5
 
 
 def test_weights_are_in_newtons_and_a_tendon_in_kilonewtons_is_doubted():
