@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::names::unknown;
-use rocking::{Detail, State};
+use rocking::{Detail, Quantity, State};
 use rocking_sweep::plan::Conditions;
 use std::ffi::CString;
 use std::io;
@@ -163,10 +163,11 @@ pub fn conditions(
     let duration = duration.map(|duration| number("duration", duration)).transpose()?;
     let mut state = State::default();
     for (name, value) in initial.into_iter().flatten() {
-        // Python takes the other arguments out before
         let known = INITIAL_VALUES.iter().map(|of| of.name).chain(["detail", "tolerance", "duration", "condition"]);
         let place = one_of("argument or initial value", &name, known.zip(0..))?;
-        let name = INITIAL_VALUES[place].name;
+        let Some(Quantity { name, .. }) = INITIAL_VALUES.get(place) else {
+            return Err(PyValueError::new_err(format!("{name} is no argument of this function: see its help")));
+        };
         state.set(place, if name.starts_with('u') { numbers(name, &value)? } else { vec![number(name, &value)?] });
     }
     Ok(Conditions { initial: state, detail, tolerance, duration, ..Conditions::default() })

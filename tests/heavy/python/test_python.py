@@ -187,6 +187,7 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.export("a.fmu", fr.Structure(preset="mcmanus"), fmi="3.0"), 'fmi = "3.0" is unknown; these are known: 2, 3'),
     (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, within="5%"), "within = '5%': it is no number"),
     (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, of=["theta", 3]), 'of = "3" is unknown'),
+    (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, detail="rigid"), "detail is no argument of this function"),
     (lambda ground: fr.Record(0.1, [1j, 2j]), "a_g: these are complex"),
     (lambda ground: fr.Structure(preset="mcmanus", m=True), "m = True: it is no number"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), duration=np.timedelta64(9, "ns")), "it is no number"),
