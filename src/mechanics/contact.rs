@@ -30,7 +30,12 @@ pub(crate) fn reserves<Q: Coordinates>(foundation: &Foundation, state: &State<Q>
 }
 
 /// Rotations, each half of the one before, within which a structure may stay.
-const TURNS: u32 = 16;
+const TURNS: u32 = 8;
+
+/// Part of its capacity that separates a point at rest from it, at least, and by which a point at rest may be beyond it. The second leaves
+/// an error of the energy at rest that is small beside the energy of the first.
+const NEAR_CAPACITY: f64 = 1e-3;
+const BEYOND_CAPACITY: f64 = NEAR_CAPACITY * NEAR_CAPACITY / 16.0;
 
 /// Part of its capacity by which a point may miss it and yield all the same.
 const ON_CAPACITY: f64 = 1e-12;
@@ -79,12 +84,14 @@ impl Foundation {
     /// The energy (J) above this rest, of y (m) and sin θ on points that have settled by `s` (m), below which no point certainly yields:
     /// half of the least ½ k δ² + ½ v²/w that brings a point to its capacity q = N + k δ + c v, with the velocity w = 1/m_t + ξ²/J_0 that an
     /// impulse of 1 gives it, where gravity adds no more than the other half within a rotation d, and the energy that turns the base by d.
-    /// 0 if a point is at its capacity at rest.
+    /// A point that rests close to its capacity counts as held, because it settles by less than a millionth of q/k after that; 0 if one
+    /// is beyond it, so that the rest is none.
     pub(crate) fn least_yield(&self, structure: &Structure, [y, sin]: [f64; 2], s: &dyn Fn(usize) -> f64) -> f64 {
         let (&Base { m_t, J0, g, ties: Ties { P_0, k_t, .. }, .. }, (weighs, leans)) =
             (structure.base(), overturns(structure.base(), structure.body(), structure.modes()));
         let to_capacity = |(i, point): (usize, &ContactPoint)| {
-            let left = point.q - point.force(point.xi * sin - y - s(i));
+            let left = (point.q - point.k * (point.xi * sin - y - s(i)).max(0.0)) / point.q;
+            let left = if left < -BEYOND_CAPACITY { 0.0 } else { point.q * left.max(NEAR_CAPACITY) };
             left * left / (2.0 * (point.k + point.c * point.c * (1.0 / m_t + point.xi * point.xi / J0)))
         };
         let pressed = self.points.iter().enumerate().map(to_capacity).fold(f64::INFINITY, f64::min);
