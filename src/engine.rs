@@ -42,6 +42,7 @@ use crate::series::first_crossing::Crossing;
 use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Foundation, Output, Phase, State, Structure};
+use contacts::settled;
 use motion::{Motion, Work};
 use phases::Rules;
 use piece::{LeapRoom, Piece, Watch};
@@ -265,20 +266,21 @@ impl Engine<Modes> {
         let of_frame = |numbers: Modes| Modes::each(level.structure(), |j, _| numbers.of(j));
         let state = State { u: of_frame(u), u_dot: of_frame(u_dot), ..state };
         let (ground, base) = (level.structure().foundation().cloned(), *level.structure().base());
-        let state = ground.as_ref().map_or(state, |ground| ground.begin(&state, &base));
-        let phase = ground.as_ref().map_or(phase, |ground| Phase::OnGround(ground.contact(&state, &base)));
         let mut engine = Engine::start(&MANY, level, settings, time, state, phase);
         if let Some(ground) = ground {
-            engine.motion.dissipators = ground.moved(&state, &base);
+            let state = ground.begin(&state, &base);
+            let (dissipators, settled) = (ground.moved(&state, &base), ground.settled(&state));
+            let phase = Phase::OnGround(ground.contact(&state, &settled, &base));
+            engine.motion = Motion { state, phase, dissipators, settled, ..engine.motion };
         }
         Ok(engine)
     }
 
     /// Mechanical energy now, J.
     pub fn energy(&self) -> f64 {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
+        let Motion { phase, state, .. } = &self.motion;
         match phase {
-            Phase::OnGround(pressed) => contact::energy(self.structure(), *pressed, state, dissipators),
+            Phase::OnGround(pressed) => contact::energy(self.structure(), *pressed, state, self.motion.kept()),
             _ => energy(self.structure(), *phase, state),
         }
     }
@@ -305,6 +307,7 @@ impl<Q: Coordinates> Engine<Q> {
             work: Work::default(),
             impulse: Impulse::default(),
             dissipators: Dissipators { hysteretic: 0.0, ..moved },
+            settled: Q::Settled::default(),
             chatter: Chatter::NONE,
             due: None,
         };
@@ -318,11 +321,11 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
     fn derivatives(&self, load: LinearLoad<Q>) -> [Second<f64, Q>; 2] {
-        let Engine { level, motion: Motion { phase, state, dissipators, .. }, .. } = self;
+        let Engine { level, motion: motion @ Motion { phase, state, .. }, .. } = self;
         if phase.properties().is_over {
             return [Second { u_ddot: Q::each(level.structure(), |_, _| 0.0), theta_ddot: 0.0 }; 2];
         }
-        derivatives(&**level, *phase, (state, dissipators, load), &mut Arc::default())
+        derivatives(&**level, *phase, (state, motion.kept(), load), &mut Arc::default())
     }
 
     /// The same structure in the same motion, with other `settings`.
@@ -341,8 +344,10 @@ impl<Q: Coordinates> Engine<Q> {
     #[inline]
     pub fn outputs(&self, load: Load<Q>) -> impl Fn(Output) -> f64 {
         // a sample would copy the motion
-        let x = shown::<Q>(&*self.level, self.motion.phase.in_motion(self.structure()), &self.motion.under(load));
-        move |output| output.added_up(&self.motion.dissipators).unwrap_or_else(|| output.of(&x))
+        let Motion { phase, state, .. } = &self.motion;
+        let kept = self.motion.kept();
+        let x = shown::<Q>(&*self.level, phase.in_motion(self.structure()), (state, load), kept);
+        move |output| output.added_up(self.structure(), kept).unwrap_or_else(|| output.of(&x))
     }
 
     /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
@@ -352,6 +357,7 @@ impl<Q: Coordinates> Engine<Q> {
         let [second, third] = self.derivatives(load);
         let state = self.level.admissible(*phase, *state);
         let x = Instant::moving(self.structure(), *phase, &state, &second, load);
+        let x = Instant { settled: self.motion.kept().1, ..x };
         let u_ddot = Duals { value: second.u_ddot, rate: third.u_ddot };
         let theta_ddot = Dual { value: second.theta_ddot, rate: third.theta_ddot };
         Rates { x, second: Second { u_ddot, theta_ddot }, is_over: phase.properties().is_over }
@@ -376,8 +382,8 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
     pub fn stays_down(&self) -> bool {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
-        !phase.properties().rotates && self.level.stays_down(state, dissipators)
+        let Motion { phase, state, .. } = &self.motion;
+        !phase.properties().rotates && self.level.stays_down(state, self.motion.kept())
     }
 
     /// The motion now, under `load`.
@@ -594,7 +600,7 @@ fn leap_under<Q: Coordinates>(
     if motion.chatter.held > 0.0 || !motion.phase.properties().may_leap {
         return None;
     }
-    let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
+    let start = level.subject().start(motion.state, motion.kept(), load, interval);
     level.leap(motion.phase, &start).filter(State::is_finite)
 }
 
@@ -690,7 +696,7 @@ where
         let mut advance = *on_the_way; // in registers
         let Advance { until, interval, load, last_step, .. } = advance;
         let Start { a_g, a_top, a_v, local_error, .. } =
-            level.subject().start(motion.state, &motion.dissipators, load, interval);
+            level.subject().start(motion.state, motion.kept(), load, interval);
         loop {
             let Some(watched) = (self.phases)(motion) else { return Ok(Some(Progress::Overturned)) };
             let Advance { elapsed, part, .. } = advance;
@@ -704,7 +710,7 @@ where
                         return Err(AdvanceError::TooLong { time: motion.time + reached, until });
                     }
                 }
-                before.get_or_insert(*motion);
+                before.get_or_insert_with(|| *motion);
                 advance.end = if elapsed + part < interval { elapsed + part } else { interval };
                 advance.part *= 2.0;
                 let load = load.from(elapsed);
@@ -723,6 +729,7 @@ where
                 a_top: a_top.from(elapsed),
                 a_v: a_v.from(elapsed),
                 dissipators: &motion.dissipators,
+                settled: Q::settlements(&motion.settled),
                 interval: watched.lasts.map_or(left, |lasts| left.min(lasts(motion))),
                 local_error,
             };
@@ -735,6 +742,7 @@ where
                 Step { level, side, contact, start: &begin, arc: self.arc, reach: self.arc.reach, is_cut: false };
             let closed = first(watched, &mut step);
             let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
+            let settled = (contact.yields != 0).then(|| settled(&step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
             let has_stalled = || closed.is_none() && duration <= STALLED / level.structure().vibration().rocking[1];
@@ -748,7 +756,7 @@ where
                 return Err(AdvanceError::TooLong { time: motion.time, until });
             }
             if duration < left {
-                before.get_or_insert(*motion);
+                before.get_or_insert_with(|| *motion);
             }
             motion.work.steps += 1;
             motion.work.evaluations += self.arc.order as u64;
@@ -762,6 +770,9 @@ where
             motion.state = state;
             if let Some(moved) = moved {
                 motion.dissipators = moved;
+            }
+            if let Some(settled) = settled {
+                motion.settled = settled;
             }
             motion.chatter.pass(duration);
             motion.time = advance.pass(duration);

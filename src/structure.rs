@@ -217,8 +217,7 @@ impl Structure {
         Structure(Arc::new(whole), self.1.clone())
     }
 
-    /// This structure on `ground` that gives, with at most 21 modes, or as many fewer as base and points have other
-    /// coordinates. The structure has no numbers of one mass any more: it is moved as
+    /// This structure on `ground` that gives, with at most 21 modes, or 20 if the base may slide. The structure has no numbers of one mass any more: it is moved as
     /// structures of many masses are. Without `ground`, this structure.
     pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, Refused> {
         let Some(ground) = ground.into() else { return Ok(self.clone()) };
@@ -229,14 +228,7 @@ impl Structure {
         let Some(mut foundation) = founded(self)? else { return Ok(self.on_rigid_ground()) };
         let (mut kept, beside) = (self.clone(), foundation.coordinates());
         if self.modes().len() + beside > MOST_MODES {
-            let points = foundation.points.len();
-            let room = MOST_MODES.checked_sub(beside).filter(|room| *room > 0).ok_or_else(|| {
-                Refused::by(format!(
-                    "ground: n_points = {points} with fs or q_u leaves no room for a mode: give at most {} points",
-                    MOST_MODES + points - beside - 1
-                ))
-            })?;
-            kept = self.with_lowest(room);
+            kept = self.with_lowest(MOST_MODES - beside);
             foundation = founded(&kept)?.unwrap_or(foundation);
         }
         let coordinates = [kept.modes(), &vec![Mode { mass: 1.0, ..Mode::default() }; beside]].concat();

@@ -20,7 +20,10 @@ impl<Q: Runs> RockingModel<Q> {
             let reactions = rates.reactions();
             let rate = |source| match source {
                 Source::Output(of) => Some(rates.of(of)),
-                Source::Coordinate(which) => scene.components(scene.engine.sample(load.value).state_rates()).nth(which),
+                Source::Coordinate(which) => {
+                    let sample = scene.engine.sample(load.value);
+                    scene.components(sample.state_rates(), &sample.settling()).nth(which)
+                }
                 Source::Reaction(of) => Some(of(&reactions)),
                 Source::Restraint(of) => Some(of(&scene.engine.restraint_rates(load.value))),
                 Source::Ground(true) => Some(load.slope.a_v),

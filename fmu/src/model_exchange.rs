@@ -83,19 +83,18 @@ impl<Q: Runs> Scene<Q> {
         let [theta, theta_dot, ref settled @ ..] = *settled else {
             unreachable!("the host gives a number for each state")
         };
+        let mut motion = *self.engine.motion();
         if let Some(HostMotion { known, .. }) = &self.outside {
-            // whether the base slides follows from the state
-            let mut motion = *self.engine.motion();
-            motion.phase = known.motion.phase;
-            self.engine.set_motion(motion);
+            motion.phase = known.motion.phase; // whether the base slides follows from the state
         }
-        let State { mut u, mut u_dot, .. } = self.engine.motion().state;
+        if self.engine.structure().foundation().is_some() {
+            motion.settled.as_mut()[..settled.len()].copy_from_slice(settled);
+        }
+        self.engine.set_motion(motion);
+        let State { mut u, mut u_dot, .. } = motion.state;
         for (j, at) in (0..self.lateral).filter_map(|j| Some((j, self.place(j)?))) {
             u.set(at, lateral[j]);
             u_dot.set(at, lateral[self.lateral + j]);
-        }
-        for (i, s) in settled.iter().enumerate() {
-            self.settled(i).into_iter().for_each(|at| u.set(at, *s));
         }
         self.engine.set_state(State { u, u_dot, theta, theta_dot });
         Ok(())

@@ -21,6 +21,7 @@ use rocking::run::Runs;
 use rocking::run::fall::FallNumbers;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::validity::{Findings, of_structure};
+use rocking::structure::ground::MOST_POINTS;
 use rocking::{Modes, Motion, OutOfRange, State};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -420,8 +421,7 @@ impl<Q: Runs> Model for RockingModel<Q> {
     }
 
     fn states(&mut self) -> Result<Vec<f64>, Failure> {
-        let scene = self.scene()?;
-        Ok(scene.components(scene.engine.motion().state).collect())
+        Ok(self.scene()?.states().collect())
     }
 
     fn set_states(&mut self, states: &[f64]) -> Result<(), Failure> {
@@ -434,18 +434,21 @@ impl<Q: Runs> Model for RockingModel<Q> {
 
     fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
         let scene = self.scene()?;
-        let usual = scene.components(scene.engine.structure().usual());
+        let structure = scene.engine.structure();
+        let settled = [structure.foundation().map_or(0.0, |ground| ground.y_s.abs()); MOST_POINTS];
+        let usual = scene.components(structure.usual(), &settled);
         Ok(usual.map(|of| if of > 0.0 { of } else { 1.0 }).collect()) // 1 of what does not move at this level
     }
 
     fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        let rates = scene.engine.sample(scene.acting(setup, inputs.values(scene.engine.structure()))).state_rates();
+        let sample = scene.engine.sample(scene.acting(setup, inputs.values(scene.engine.structure())));
+        let rates = sample.state_rates();
         if !rates.is_finite() {
             let &Motion { time, state: State { u, theta, .. }, .. } = scene.engine.motion();
             return Err(Refusal::NoStateRates { time, u: u.total(), theta }.into());
         }
-        Ok(scene.components(rates).collect())
+        Ok(scene.components(rates, &sample.settling()).collect())
     }
 
     fn indicators(&mut self) -> Result<Vec<f64>, Failure> {

@@ -45,7 +45,8 @@ pub struct Scene<Q: Runs = f64> {
 
 /// The knowledge of an instance beside the present of a motion that the host integrates.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct HostMotion<Q = f64> {
+#[serde(bound = "")]
+pub struct HostMotion<Q: Runs = f64> {
     /// The last motion that was known.
     pub known: Checkpoint<Q>,
     /// The inputs when event mode was entered: what is set there has not acted before.
@@ -148,10 +149,10 @@ impl<Q: Runs> Scene<Q> {
         self.known.get_or_init(|| numbers(&self.structure).into_iter().map(|(_, value)| value).collect())
     }
 
-    /// The numbers of a `state`, in the order of the table.
-    pub fn components(&self, state: State<Q>) -> impl Iterator<Item = f64> {
+    /// The numbers of a `state` and of settlements for good, or of their rates, in the order of the table.
+    pub fn components<'a>(&'a self, state: State<Q>, settled: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let of = |coordinates: Q| (0..self.lateral).map(move |j| self.place(j).map_or(0.0, |at| coordinates.of(at)));
-        let settled = (0..self.settlements).map(move |i| self.settled(i).map_or(0.0, |at| state.u.of(at)));
+        let settled = settled.iter().take(self.settlements).copied();
         of(state.u).chain(of(state.u_dot)).chain([state.theta, state.theta_dot]).chain(settled)
     }
 
@@ -167,9 +168,10 @@ impl<Q: Runs> Scene<Q> {
         }
     }
 
-    /// The place in the engine of the settlement of point `i` for good; none of what does not move.
-    pub fn settled(&self, i: usize) -> Option<usize> {
-        self.engine.structure().foundation().map(|ground| ground.settled() + i)
+    /// The numbers of the state of the engine.
+    pub fn states(&self) -> impl Iterator<Item = f64> {
+        let motion = self.engine.motion();
+        self.components(motion.state, motion.settled.as_ref())
     }
 
     /// The load that acts now: `inputs` and the record.

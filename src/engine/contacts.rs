@@ -13,15 +13,16 @@ use crate::engine::transition::TransitionKind;
 use crate::engine::yielding::{product_integral, square_integral};
 use crate::levels::level::Level;
 use crate::levels::on_ground::Pushes;
+use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
-use crate::mechanics::contact::{margins, reserves};
+use crate::mechanics::contact::heights;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::{Dissipators, dampers_on_ground, places};
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
-use crate::series::taylor::{Series, ZERO, evaluate};
+use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate, sum_of_magnitudes};
 use crate::series::terms::Terms;
 use crate::structure::ground::{ContactPoint, Footing};
-use crate::{Foundation, Friction, Phase, PressedPoints, State, Ties};
+use crate::{Foundation, Friction, Phase, PressedPoints, Ties};
 
 /// Part of its terms by which a gap may miss its root.
 pub(super) const ROUNDING: f64 = 1e-13;
@@ -40,16 +41,16 @@ struct Rises {
 impl Rises {
     #[inline]
     fn new<Q: Coordinates>(level: &dyn Level<Q>, arc: &Arc<Q>) -> Rises {
-        let foundation = level.structure().ground();
-        let (mut y, mut sin) = ([ZERO; 2], [ZERO; 2]);
+        let (foundation, part) = (level.structure().ground(), arc.span / level.longest_step());
+        let mut rises = Rises { y: [ZERO; 2], sin: [ZERO; 2], order: arc.order, scale: 0.0, part };
         for (i, series) in [&arc.u, &arc.u_dot].into_iter().enumerate() {
             for (k, of) in arc.used(series).iter().enumerate() {
                 let footing = of.footing(foundation);
-                (y[i][k], sin[i][k]) = (footing.y, footing.sin);
+                (rises.y[i][k], rises.sin[i][k]) = (footing.y, footing.sin);
             }
         }
-        let (scale, part) = (foundation.y_s.abs() + y[0][0].abs(), arc.span / level.longest_step());
-        Rises { y, sin, order: arc.order, scale, part }
+        rises.scale = foundation.y_s.abs() + rises.y[0][0].abs();
+        rises
     }
 
     /// The height over the step at ξ plus τ times its rate, and what counts as 0 of it.
@@ -116,25 +117,37 @@ const ELASTIC: i8 = -2;
 impl<Q: Coordinates> Guard<Q> for Points {
     fn first(&self, &Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> (Crossing, Branch) {
         let foundation = level.structure().ground();
-        let (rises, mut found) = (Rises::new(level, arc), (Crossing::None, Branch::default()));
+        let rises = Rises::new(level, arc);
+        let mut found = (Crossing::None, Branch::default());
         for (i, point) in foundation.points.iter().enumerate() {
-            let settled = start.state.u.settlement(foundation, i);
+            let settled = start.settled[i];
             let pushes = |more: f64| rises.above(settled + more, point.xi, point.c / point.k);
             let reach = found.0.sigma().min(reach);
             if contact.yields(i) {
-                let settles = std::array::from_fn(|k| arc.u_dot[k].settlement(foundation, i));
+                // ṡ = ė − v, with all orders, of which the motion may have fewer
+                let (fall, mut rounding) = rises.rate(point.xi);
+                let creep = point.creep(start.state.u.footing(foundation).height(point.xi) + settled);
+                let mut settles = fall.map(|fall| -fall);
+                settles[..=MAX_ORDER]
+                    .iter_mut()
+                    .zip(point.fades(arc.span))
+                    .for_each(|(of, fades)| *of += creep * fades);
                 // as much as of the force less the capacity, from which a point begins to yield
-                let off = if point.c > 0.0 { pushes(point.q / point.k).1 * point.k / point.c } else { 0.0 };
-                let rate = (settles, rises.rate(point.xi).1 + off);
-                see(&mut found, first([rises.gap(&rate, 1.0)], reach), i, ELASTIC);
+                rounding += if point.c > 0.0 { pushes(point.q / point.k).1 * point.k / point.c } else { 0.0 };
+                let rate = (settles, rounding);
+                see(&mut found, first([opened(&rate, 1.0, MAX_ORDER, rises.part)], reach), i, ELASTIC);
                 continue;
             }
             if contact.is_pressed(i) {
                 let depth = pushes(0.0);
+                let reserve = point.q / point.k;
+                let (first_depth, swing) = (depth.0[0], sum_of_magnitudes(&depth.0[1..=arc.order]) * reach);
+                if -first_depth > swing.max(depth.1) && reserve + first_depth - depth.1 > swing {
+                    continue; // most steps need no more
+                }
                 see(&mut found, first([rises.gap(&depth, -1.0)], reach), i, -1);
-                let (reach, reserve) = (found.0.sigma().min(reach), point.q / point.k);
-                let most = Gap::new(&depth.0[..=arc.order], 1.0, reserve - depth.1);
-                if foundation.yields && !most.is_open_throughout(reach) {
+                if foundation.yields {
+                    let reach = found.0.sigma().min(reach);
                     see(&mut found, first([rises.gap(&pushes(reserve), 1.0)], reach), i, YIELDS);
                 }
                 continue;
@@ -158,7 +171,7 @@ impl<Q: Coordinates> Guard<Q> for Points {
                 return Some(if branch.sign == YIELDS { TransitionKind::Settles(i) } else { TransitionKind::Holds(i) });
             }
             let footing = state.u.footing(ground);
-            let e = footing.height(xi) + state.u.settlement(ground, i);
+            let e = footing.height(xi) + motion.settled.as_ref()[i];
             contact.pressed ^= 1 << i;
             let taken = footing.taken - f64::from(branch.sign) * 0.5 * k * e * e;
             state.u.set_footing(ground, Footing { taken, ..footing });
@@ -167,21 +180,20 @@ impl<Q: Coordinates> Guard<Q> for Points {
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
-        let (contact, foundation) = (now.motion.phase.contact(), now.level.structure().ground());
-        let of = |(i, margin): (usize, f64)| if contact.is_pressed(i) { margin } else { -margin };
-        let (state, base) = (&now.motion.state, now.level.structure().base());
-        let reserve = |(i, reserve): (usize, f64)| match foundation.points[i] {
-            _ if !contact.is_pressed(i) => f64::INFINITY,
-            // without a dashpot it carries its capacity as long as it goes down
-            ContactPoint { c: 0.0, xi, .. } if contact.yields(i) => {
-                foundation.y_s * state.u_dot.footing(foundation).height(xi) / (base.g * base.B).sqrt()
+        let (Motion { phase, state, settled, .. }, structure) = (&now.motion, now.level.structure());
+        let (contact, ground, base) = (phase.contact(), structure.ground(), structure.base());
+        let margin = |(i, [depth, push]): (usize, [f64; 2])| {
+            let (ContactPoint { xi, k, c, q }, margin) = (ground.points[i], depth.min(push));
+            match q / k - push {
+                _ if !contact.is_pressed(i) => -margin,
+                reserve if !contact.yields(i) => margin.min(reserve),
+                reserve if c > 0.0 => margin.min(-reserve),
+                // without a dashpot it carries its capacity as long as it goes down
+                _ => margin.min(ground.y_s * state.u_dot.footing(ground).height(xi) / (base.g * base.B).sqrt()),
             }
-            _ if contact.yields(i) => -reserve,
-            _ => reserve,
         };
-        let reserves = reserves(foundation, state).enumerate().map(reserve).filter(|_| foundation.yields);
-        let least = margins(foundation, state).enumerate().map(of).chain(reserves).fold(f64::INFINITY, f64::min);
-        (0, least / foundation.y_s.abs() + BAND)
+        let margins = heights(ground, state, settled.as_ref()).enumerate().map(margin);
+        (0, margins.fold(f64::INFINITY, f64::min) / ground.y_s.abs() + BAND)
     }
 }
 
@@ -271,18 +283,31 @@ pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
     }
     if let (Friction::Slides(side), Some(mu_c), Some(place)) = (contact.friction, ground.mu_c, ground.slide()) {
         let rate: Series = std::array::from_fn(|k| arc.u_dot[k].of(place));
-        let normal = normal(ground, contact, &start.state, arc);
+        let normal = normal(ground, contact, start, arc);
         let rubbed = product_integral(arc.used(&normal), arc.used(&rate), reach) * arc.span;
         moved.slip += side.sign() * (end().of(place) - arc.u[0].of(place));
         moved.friction += side.sign() * mu_c * rubbed;
     }
     if contact.yields != 0 {
-        let end = end();
+        let settled = settled(step);
         for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
-            moved.settling += point.q * (end.settlement(ground, i) - arc.u[0].settlement(ground, i));
+            moved.settling += point.q * (settled.as_ref()[i] - start.settled[i]);
         }
     }
     moved
+}
+
+/// How far points have settled for good at the reach of a step.
+pub(crate) fn settled<Q: Coordinates>(&Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> Q::Settled {
+    let mut settled = Q::Settled::default();
+    settled.as_mut().iter_mut().zip(start.settled).for_each(|(settled, start)| *settled = *start);
+    let ground = level.structure().ground();
+    let [begin, end] = [arc.u[0], Q::evaluate(arc.used(&arc.u), reach)].map(|u| u.footing(ground));
+    for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
+        let crept = point.crept(begin.height(point.xi) + start.settled[i], reach * arc.span);
+        settled.as_mut()[i] = crept - end.height(point.xi);
+    }
+    settled
 }
 
 fn stretched<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
@@ -296,12 +321,15 @@ fn stretched<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -
 pub(super) fn normal<Q: Coordinates>(
     ground: &Foundation,
     contact: PressedPoints,
-    state: &State<Q>,
+    start: &Start<Q>,
     arc: &Arc<Q>,
 ) -> Series {
-    let (points, mut normal) = (Pushes::of(ground, contact, state), ZERO);
-    for (k, of) in normal.iter_mut().enumerate().take(arc.order + 1) {
-        [*of, _] = points.forces([&arc.u[k], &arc.u_dot[k]].map(|of| of.footing(ground)), k);
+    let (mut normal, points) = (ZERO, Pushes::of(ground, contact, start.settled));
+    let ([mut push, _], by) = (points.push, points.by.map(|by| by.to_array()[0]));
+    for (of, (u, u_dot)) in normal.iter_mut().zip(arc.used(&arc.u).iter().zip(&arc.u_dot)) {
+        let [[y, sin], [y_dot, turning]] = [u, u_dot].map(|of| [of.of(ground.place), of.of(ground.place + 1)]);
+        *of = push + by[0] * y + by[1] * sin + by[2] * y_dot + by[3] * turning;
+        push = 0.0; // of the next order
     }
     normal
 }

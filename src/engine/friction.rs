@@ -14,9 +14,10 @@ use crate::levels::sliding::mobility;
 use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
+use crate::series::extremes::off_chord;
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{ORDERS, Series, ZERO, product, sum_of_magnitudes, weighed_sum};
-use crate::{Base, Foundation, Friction, Mode, Output, Phase, PressedPoints, Side, State, Structure};
+use crate::series::taylor::{ORDERS, Series, ZERO, evaluate, product, weighed_sum};
+use crate::{Base, Foundation, Friction, Output, Phase, PressedPoints, Side, State, Structure};
 
 /// The base, which may slide, sticks, slides or flies.
 pub(crate) struct Sliding;
@@ -57,11 +58,11 @@ impl Needed {
     fn new<Q: Coordinates>(structure: &Structure, start: &Start<Q>, arc: &Arc<Q>) -> Needed {
         let (ground, modes) = (structure.ground(), structure.modes());
         let (&Base { m_t, g, .. }, S_1) = (structure.base(), structure.body().S_1);
-        let (mut linear, mut rate) = (ZERO, ZERO);
+        let mut needed = Needed { linear: ZERO, rate: ZERO, rounding: 0.0 };
         for (k, u_dot) in arc.used(&arc.u_dot).iter().enumerate() {
-            rate[k] = offset(modes, u_dot);
+            needed.rate[k] = offset(structure, u_dot);
             if k > 0 {
-                linear[k - 1] = ORDERS[k] / arc.span * (S_1 * u_dot.footing(ground).sin + rate[k]);
+                needed.linear[k - 1] = ORDERS[k] / arc.span * (S_1 * u_dot.of(ground.place + 1) + needed.rate[k]);
             }
         }
         let pushed = |a_g: f64, a_top: &Q| {
@@ -71,20 +72,37 @@ impl Needed {
         for (k, a_g, a_top, scale) in
             [(0, start.a_g.value, &start.a_top.value, 1.0), (1, start.a_g.slope, &start.a_top.slope, arc.span)]
         {
-            linear[k] += scale * (m_t * a_g - pushed(a_g, a_top));
+            needed.linear[k] += scale * (m_t * a_g - pushed(a_g, a_top));
         }
         let slopes = modes.iter().enumerate().map(|(j, mode)| mode.gamma * arc.u_dot[1].of(j));
         let forces = slopes.chain([S_1 * arc.u_dot[1].footing(ground).sin]).map(|of| of.abs() / arc.span).sum::<f64>();
-        Needed { linear, rate, rounding: ROUNDING * (m_t * (g + start.a_g.value.abs()) + forces) }
+        needed.rounding = ROUNDING * (m_t * (g + start.a_g.value.abs()) + forces);
+        needed
+    }
+
+    /// Whether a base under this `normal` force, with the friction `mu_c`, certainly sticks up to `reach`: what both ends have left, less how
+    /// far either force leaves its chord.
+    fn is_there<Q: Coordinates>(
+        &self,
+        structure: &Structure,
+        (mu_c, normal): (f64, &Series),
+        arc: &Arc<Q>,
+        reach: f64,
+    ) -> bool {
+        let [normal, linear] = [normal, &self.linear].map(|of| arc.used(of));
+        let left = |normal: f64, linear: f64| mu_c * normal - linear.abs();
+        let least = left(normal[0], linear[0]).min(left(evaluate(normal, reach), evaluate(linear, reach)));
+        let off = mu_c * off_chord(normal, reach) + off_chord(linear, reach);
+        least > off + self.rest(structure, arc)
     }
 
     /// Bound of the part that is left out.
-    fn rest<Q: Coordinates>(&self, modes: &[Mode], arc: &Arc<Q>) -> f64 {
-        let most = |of: &Series| sum_of_magnitudes(arc.used(of));
+    fn rest<Q: Coordinates>(&self, structure: &Structure, arc: &Arc<Q>) -> f64 {
         let slope = |of: &Series| weighed_sum(&ORDERS[1..], &of[1..=arc.order]) / arc.span;
-        let (theta, theta_dot, bend) = (most(&arc.theta), most(&arc.theta_dot), slope(&arc.theta_dot));
-        let (rate, second) = (most(&self.rate), slope(&self.rate));
-        let offset = offset(modes, &arc.u[0]).abs() + arc.span * rate;
+        let (bend, second) = (slope(&arc.theta_dot), slope(&self.rate));
+        let most = |first: f64, slope: f64| first.abs() + arc.span * slope;
+        let (theta_dot, rate) = (most(arc.theta_dot[0], bend), most(self.rate[0], second));
+        let (theta, offset) = (most(arc.theta[0], theta_dot), most(offset(structure, &arc.u[0]), rate));
         second * theta * theta / 2.0 + 2.0 * rate * theta_dot * theta + offset * (bend * theta + theta_dot * theta_dot)
     }
 
@@ -92,7 +110,7 @@ impl Needed {
     fn series<Q: Coordinates>(&self, structure: &Structure, arc: &Arc<Q>) -> Series {
         let [mut sin, mut cos, mut of] = [ZERO; 3];
         for (k, u) in arc.used(&arc.u).iter().enumerate() {
-            (sin[k], of[k]) = (u.footing(structure.ground()).sin, offset(structure.modes(), u));
+            (sin[k], of[k]) = (u.footing(structure.ground()).sin, offset(structure, u));
         }
         cos[0] = libm::cos(arc.theta[0]);
         (1..=arc.order).for_each(|k| cos[k] = -product(&arc.theta_dot, &sin, k - 1) * arc.span / ORDERS[k]);
@@ -107,8 +125,11 @@ impl Needed {
 
 /// μ of these coordinates, kg·m, or its rate.
 #[inline(always)]
-fn offset<Q: Coordinates>(modes: &[Mode], u: &Q) -> f64 {
-    modes.iter().enumerate().map(|(j, mode)| mode.gamma * u.of(j)).sum()
+fn offset<Q: Coordinates>(structure: &Structure, u: &Q) -> f64 {
+    let gammas = &structure.gauges().V_t.shape;
+    let rest = (4..gammas.count).step_by(4);
+    let four = rest.fold(u.four(0) * gammas.four(0), |sum, j| sum + u.four(j) * gammas.four(j));
+    four.to_array().iter().sum()
 }
 
 /// How friction goes on where the base stops or is touched in `state`, `tau` seconds after `start`: it sticks unless it needs more than the
@@ -128,7 +149,7 @@ fn stopped<Q: Coordinates>(
     level.series(Phase::OnGround(contact), &start, &mut arc);
     let needed = Needed::new(structure, &start, &arc);
     let (rounding, needed) = (needed.rounding, needed.series(structure, &arc)[0]);
-    let most = ground.mu_c.unwrap_or(0.0) * normal(ground, contact, &state, &arc)[0];
+    let most = ground.mu_c.unwrap_or(0.0) * normal(ground, contact, &start, &arc)[0];
     match needed.abs() > most + rounding {
         true => Friction::Slides(Side::of(-needed)),
         false => Friction::Sticks,
@@ -162,22 +183,15 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
             Friction::Free if x_dot != 0.0 => becomes(Crossing::At(0.0), Friction::Slides(Side::of(x_dot))),
             Friction::Free => becomes(Crossing::At(0.0), stopped(level, contact, (start, 0.0), start.state)),
             Friction::Sticks => {
-                let (needed, normal) = (Needed::new(structure, start, arc), normal(ground, contact, &start.state, arc));
-                let side = |needed: &Series, sign: f64| -> Series {
-                    std::array::from_fn(|k| mu_c * normal[k] - sign * needed[k])
-                };
-                let rest = needed.rest(structure.modes(), arc);
-                let is_open = |sign: f64| {
-                    let gap = side(&needed.linear, sign);
-                    gap[0] - rest > sum_of_magnitudes(&gap[1..=arc.order]) * reach
-                };
-                if is_open(1.0) && is_open(-1.0) {
+                let needed = Needed::new(structure, start, arc);
+                let normal = normal(ground, contact, start, arc);
+                if needed.is_there(structure, (mu_c, &normal), arc, reach) {
                     return none;
                 }
                 let (rounding, needed, mut found) = (needed.rounding, needed.series(structure, arc), none);
                 let part = arc.span / level.longest_step();
                 for (sign, slides) in [(1.0, Side::Left), (-1.0, Side::Right)] {
-                    let gap = (side(&needed, sign), rounding);
+                    let gap = (std::array::from_fn(|k| mu_c * normal[k] - sign * needed[k]), rounding);
                     // the last two orders of R_h are not known
                     let gap = opened(&gap, 1.0, arc.order.saturating_sub(2), part);
                     let sign = Sliding::sign(Friction::Slides(slides));

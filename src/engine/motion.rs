@@ -6,7 +6,7 @@ use crate::mechanics::impact::Chatter;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
-use crate::mechanics::restraint::Dissipators;
+use crate::mechanics::restraint::{Dissipators, Kept};
 use crate::{Phase, Side, State};
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,8 @@ pub struct Work {
 
 /// Everything about a structure that changes with time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Motion<Q = f64> {
+#[serde(bound = "")]
+pub struct Motion<Q: Coordinates = f64> {
     /// Time, s.
     pub time: f64,
     /// State at that time.
@@ -36,6 +37,8 @@ pub struct Motion<Q = f64> {
     pub impulse: Impulse,
     /// The plastic elongations of the dissipators, and the energy that the dissipators have taken.
     pub dissipators: Dissipators,
+    /// How far contact points of the ground have settled for good, m.
+    pub settled: Q::Settled,
     pub(crate) chatter: Chatter,
     /// The guard that has closed now, before its transition is applied.
     pub(crate) due: Option<Closed>,
@@ -45,7 +48,13 @@ impl<Q: Coordinates> Motion<Q> {
     /// The motion under `load`.
     #[inline]
     pub(crate) fn under(&self, load: Load<Q>) -> Now<'_, Q> {
-        Now { state: &self.state, load, dissipators: &self.dissipators }
+        Now { state: &self.state, load, kept: self.kept() }
+    }
+
+    /// What it keeps beside the state.
+    #[inline]
+    pub(crate) fn kept(&self) -> Kept<'_> {
+        (&self.dissipators, Q::settlements(&self.settled))
     }
 
     /// The side about which the structure rocks, or to which it leans on ground that gives.

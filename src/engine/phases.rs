@@ -21,7 +21,7 @@ use crate::numbers::Real;
 use crate::series::extremes::off_chord;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
-use crate::{Foundation, Phase, Side, Structure};
+use crate::{Phase, PressedPoints, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
 
 /// A phase as the loop knows it.
@@ -68,8 +68,9 @@ impl<Q: Coordinates> Rules<Q> {
     #[inline]
     pub(crate) fn moved(&self, subject: &LevelSubject, step: &Step<Q>) -> Option<Dissipators> {
         let is_restrained = subject.is_tied && subject.structure.base().is_restrained();
-        let may_stay_moved = || Q::foundation(&subject.structure).is_some_and(Foundation::may_stay_moved);
-        self.moved.filter(|_| is_restrained || may_stay_moved()).map(|moved| moved(step))
+        let PressedPoints { yields, friction, .. } = step.contact;
+        let moves = is_restrained || yields != 0 || friction.sign() != 0.0;
+        self.moved.filter(|_| moves).map(|moved| moved(step))
     }
 }
 
@@ -108,8 +109,7 @@ impl<Q: Coordinates> Guard<Q> for Uplift {
     }
 
     fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
-        let Motion { state, dissipators, .. } = &now.motion;
-        let start = now.level.subject().start(*state, dissipators, now.load.into(), ahead);
+        let start = now.level.subject().start(now.motion.state, now.motion.kept(), now.load.into(), ahead);
         now.level.liftable().is_none_or(|liftable| liftable.stays_for(&start))
     }
 

@@ -3,23 +3,23 @@
 //! Within a piece there is no transition. If the engine expanded the motion into a polynomial, the piece has that polynomial. If
 //! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
+use crate::engine::contacts::settled;
 use crate::engine::motion::Motion;
 use crate::engine::phases;
 use crate::engine::sample::{Sample, shown};
 use crate::engine::step::Step;
 use crate::engine::transition::Transition;
-use crate::levels::level::{Level, Now, off_chord};
+use crate::levels::level::{Level, Now, edges, off_chord};
 use crate::levels::start::Start;
 use crate::mechanics::arc::{Arc, Polynomials};
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reach::{Magnitudes, OffChord, magnitudes};
-use crate::mechanics::restraint::Dissipators;
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
 use crate::series::terms::Terms;
-use crate::{Friction, Output, Phase, Ramp, State, Structure};
+use crate::{Friction, Output, Phase, Ramp, Reactions, State, Structure};
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
@@ -127,8 +127,16 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
     /// The structure in `state`, `tau` seconds after the start of the piece, as outputs read it.
     #[inline]
     pub(crate) fn shown(&self, tau: f64, state: &State<Q>) -> Instant<'p, f64, Q> {
-        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
-        shown::<Q>(self.level, self.before.phase, &now)
+        shown::<Q>(self.level, self.before.phase, (state, self.load.at(tau)), self.before.kept())
+    }
+
+    /// What the edges of the base carry in `state`, `tau` seconds after the start of the piece.
+    pub(crate) fn edges(&self, tau: f64, state: &State<Q>) -> Reactions {
+        let &Piece { before, level, .. } = self;
+        let (load, kept, phase) = (self.load.at(tau), before.kept(), before.phase.in_motion(level.structure()));
+        let x = Instant::of(level.structure(), phase, state, load);
+        let second = level.accelerations(phase, &Now { state, load, kept });
+        edges(&x, level.subject(), kept.0, Reactions::at(&x, &second))
     }
 
     /// The state `tau` seconds after the start of the piece.
@@ -154,15 +162,19 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
         self.end
     }
 
-    /// The dissipators `tau` seconds after the start of the piece.
-    fn dissipators_at(&self, tau: f64) -> Dissipators {
-        let moved = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
+    /// The motion at `time`, `tau` seconds after the start of the piece.
+    fn motion_at(&self, time: f64, tau: f64) -> Motion<Q> {
+        let mut motion = Motion { time, state: self.state_at(tau), ..*self.before };
+        if let Some((watched, arc)) = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc) {
             let (level, side, contact) = (self.level, self.before.phase.side(), self.before.phase.contact());
             let step =
                 Step { level, side, contact, start: &self.whole().step(), arc, reach: tau / arc.span, is_cut: false };
-            watched.moved(level.subject(), &step)
-        });
-        moved.unwrap_or(self.before.dissipators)
+            if contact.yields != 0 {
+                motion.settled = settled(&step);
+            }
+            motion.dissipators = watched.moved(level.subject(), &step).unwrap_or(motion.dissipators);
+        }
+        motion
     }
 
     /// The motion at `time` (s), which lies within the piece.
@@ -171,8 +183,7 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
         // an instant that misses the end by the clock's rounding is the end
         let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
         let tau = if is_before { time - self.before.time } else { self.duration };
-        let motion = Motion { time, state: self.state_at(tau), dissipators: self.dissipators_at(tau), ..*self.before };
-        Sample { motion, load: self.load.at(tau), level: self.level }
+        Sample { motion: self.motion_at(time, tau), load: self.load.at(tau), level: self.level }
     }
 }
 
@@ -189,7 +200,7 @@ impl<'a, Q: Coordinates> PiecePart<'a, Q> {
     #[inline]
     pub(crate) fn step(&self) -> Start<'a, Q> {
         let PiecePart { piece, start: (passed, state) } = *self;
-        piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), piece.duration - passed)
+        piece.level.subject().start(state, piece.before.kept(), piece.load.from(passed), piece.duration - passed)
     }
 
     /// The motion of the part as polynomials, in order of time.
@@ -229,16 +240,6 @@ impl<'a, Q: Coordinates> PiecePart<'a, Q> {
             return Some(OffChord::new(off(&u, &u_ddot), off(&u_dot, &jerk), 0.0, thetas));
         };
         Some(OffChord::of(arc, thetas))
-    }
-
-    /// The motion at both ends.
-    pub(crate) fn samples(&self) -> [Sample<'a, Q>; 2] {
-        let &Piece { before, ref load, level, duration, end, .. } = self.piece;
-        [self.start, (duration, end)].map(|(tau, state)| Sample {
-            motion: Motion { time: before.time + tau, state, ..*before },
-            load: load.at(tau),
-            level,
-        })
     }
 }
 
@@ -331,13 +332,6 @@ impl<Q: Coordinates> Expansion<'_, Q> {
         self.piece.before.time + self.from + sigma * self.arc.span
     }
 
-    /// The motion at `sigma`, with the dissipators of the start of the piece.
-    pub(crate) fn sample(&self, sigma: f64) -> Sample<'_, Q> {
-        let &Piece { before, load, level, .. } = self.piece;
-        let motion = Motion { time: self.time(sigma), state: self.arc.at(sigma), ..*before };
-        Sample { motion, load: load.at(self.from + sigma * self.arc.span), level }
-    }
-
     /// Whether `series` ends in the value `last`, but for this `part` of its terms or the truncation of the motion.
     pub(crate) fn has_converged(&self, series: &Terms, last: f64, part: f64) -> bool {
         let terms = series.used().iter().rev().fold(0.0, |sum, c| sum * self.arc.reach + c.abs());
@@ -387,8 +381,9 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
         let a_v = Terms::ramp(value.a_v, slope.a_v * arc.span);
         Instant {
             structure,
-            s: phase.properties().pivot,
+            s: phase.properties().pivot as f32,
             contact: phase.contact(),
+            settled: Q::settlements(&before.settled),
             damping: structure.base().damping(phase),
             u,
             u_dot,
@@ -437,7 +432,8 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
             true => [most_of(self.drive()), most_of(self.lift())],
             false => [0.0; 2],
         };
-        Magnitudes { arc: needs_arc.then(|| (arc, a_g())), a_g: most.a_g + drive, a_v: most.a_v + lift, ..most }
+        let arc = needs_arc.then(|| (arc, a_g(), Q::settlements(&piece.before.settled)));
+        Magnitudes { arc, a_g: most.a_g + drive, a_v: most.a_v + lift, ..most }
     }
 
     /// Shows the series of outputs in σ, each with its polynomial. This polynomial is shown whole, or in parts if sin θ and cos θ need

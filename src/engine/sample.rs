@@ -5,8 +5,8 @@ use crate::levels::level::{Level, Now, edges};
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::{Restraints, restraints};
-use crate::{Output, Phase, Reactions};
+use crate::mechanics::restraint::{Kept, Restraints, restraints};
+use crate::{Output, Phase, Reactions, State};
 use std::cell::OnceCell;
 
 /// A motion at one instant; at a transition, just after it.
@@ -66,24 +66,33 @@ impl<Q: Coordinates> Sample<'_, Q> {
                 Output::P_t => ties().P_t,
                 Output::F_d1 => ties().F_d1,
                 Output::F_d2 => ties().F_d2,
-                _ => output.added_up(&self.motion.dissipators).unwrap_or_else(|| output.of(&shown)),
+                _ => {
+                    let added_up = output.added_up(self.level.structure(), self.motion.kept());
+                    added_up.unwrap_or_else(|| output.of(&shown))
+                }
             }
         }
     }
 
     pub(crate) fn shown(&self) -> Instant<'_, f64, Q> {
         let Sample { motion, load, level } = self;
-        shown::<Q>(*level, motion.phase.in_motion(level.structure()), &motion.under(*load))
+        let phase = motion.phase.in_motion(level.structure());
+        shown::<Q>(*level, phase, (&motion.state, *load), motion.kept())
     }
 }
 
 /// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
 #[inline]
-pub(crate) fn shown<'a, Q: Coordinates>(level: &'a dyn Level<Q>, phase: Phase, now: &Now<Q>) -> Instant<'a, f64, Q> {
+pub(crate) fn shown<'a, Q: Coordinates>(
+    level: &'a dyn Level<Q>,
+    phase: Phase,
+    (state, load): (&State<Q>, Load<Q>),
+    kept: Kept<'a>,
+) -> Instant<'a, f64, Q> {
     let structure = level.structure();
-    let x = Instant::of(structure, phase, now.state, now.load);
+    let x = Instant { settled: kept.1, ..Instant::of(structure, phase, state, load) };
     if !structure.gauges().has_feedthrough {
         return x;
     }
-    x.accelerated(&level.accelerations(phase, now))
+    x.accelerated(&level.accelerations(phase, &Now { state, load, kept }))
 }

@@ -8,7 +8,7 @@ use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reactions::Reactions;
-use crate::mechanics::restraint::{Angles, Dissipators, pulls};
+use crate::mechanics::restraint::{Angles, Dissipators, Kept, pulls};
 use crate::numbers::{Angle, Real};
 use crate::{Phase, Side, State, Structure};
 use std::any::Any;
@@ -20,7 +20,7 @@ use std::fmt::{self, Debug};
 pub(crate) struct Now<'a, Q = f64> {
     pub state: &'a State<Q>,
     pub load: Load<Q>,
-    pub dissipators: &'a Dissipators,
+    pub kept: Kept<'a>,
 }
 
 /// The structure that a level moves, and how it is moved.
@@ -41,12 +41,12 @@ impl LevelSubject {
     pub(crate) fn start<'a, Q: Coordinates>(
         &self,
         state: State<Q>,
-        dissipators: &'a Dissipators,
+        (dissipators, settled): Kept<'a>,
         load: LinearLoad<Q>,
         interval: f64,
     ) -> Start<'a, Q> {
         let (a_g, a_top, a_v) = (load.on_foundation(), load.on_top(&self.structure), load.upwards());
-        Start { state, a_g, a_top, a_v, dissipators, interval, local_error: self.local_error }
+        Start { state, a_g, a_top, a_v, dissipators, settled, interval, local_error: self.local_error }
     }
 }
 
@@ -106,13 +106,13 @@ pub trait Level<Q: Coordinates = f64>: Send + Any {
     }
 
     /// Distance of a structure in full contact from uplift, and its side, as in [`Liftable::margin`].
-    fn uplift_margin(&self, &Now { state, load, dissipators }: &Now<Q>) -> (f64, Side) {
+    fn uplift_margin(&self, &Now { state, load, kept: (dissipators, _) }: &Now<Q>) -> (f64, Side) {
         let a_top = load.on_modes(self.structure());
         self.liftable().map_or((1.0, Side::Right), |of| of.margin(state, [load.a_g, load.a_v], &a_top, dissipators))
     }
 
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
-    fn stays_down(&self, state: &State<Q>, dissipators: &Dissipators) -> bool {
+    fn stays_down(&self, state: &State<Q>, (dissipators, _): Kept) -> bool {
         self.liftable().is_none_or(|liftable| liftable.stays_down(state, dissipators))
     }
 
@@ -125,8 +125,8 @@ pub trait Level<Q: Coordinates = f64>: Send + Any {
     fn first(&self) -> &RefCell<Box<Arc<Q>>>;
 
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
-    fn accelerations(&self, phase: Phase, &Now { state, load, dissipators }: &Now<Q>) -> Second<f64, Q> {
-        let [second] = derivatives(self, phase, (state, dissipators, load.into()), &mut self.first().borrow_mut());
+    fn accelerations(&self, phase: Phase, &Now { state, load, kept }: &Now<Q>) -> Second<f64, Q> {
+        let [second] = derivatives(self, phase, (state, kept, load.into()), &mut self.first().borrow_mut());
         second
     }
 }
@@ -188,10 +188,10 @@ pub(crate) fn most_of_swings<Q: Coordinates>(
 pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
     level: &(impl Level<Q> + ?Sized),
     phase: Phase,
-    (state, dissipators, load): (&State<Q>, &Dissipators, LinearLoad<Q>),
+    (state, kept, load): (&State<Q>, Kept, LinearLoad<Q>),
     arc: &mut Arc<Q>,
 ) -> [Second<f64, Q>; K] {
-    let start = level.subject().start(*state, dissipators, load, 1.0);
+    let start = level.subject().start(*state, kept, load, 1.0);
     arc.spared = MIN_ORDER - K;
     level.series(phase, &Start { local_error: 1e100, ..start }, arc);
     std::array::from_fn(|i| {

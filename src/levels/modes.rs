@@ -586,6 +586,7 @@ mod tests {
     use crate::mechanics::reactions::Reactions;
     use crate::structure::description::tests::three_storeys;
     use crate::structure::gauge::Gauge;
+    use crate::structure::ground::MOST_POINTS;
     use crate::structure::mode::Modes;
     use crate::{Body, Parameters, Structure};
     use approx::assert_relative_eq;
@@ -609,7 +610,7 @@ mod tests {
             let [u, u_dot] = [[2.5, -1.5], [200.0, 50.0]].map(|of| Modes::new(&of.map(|it| scale * it)));
             let state = State { u, u_dot, theta: 0.0, theta_dot: 0.0 };
             let load = Load { a_g: 0.7, F_t: Modes { rest: [6e4, -9e4], ..Modes::new(&[90.0, 50.0]) }, a_v };
-            let now = Now { state: &state, load, dissipators: &dissipators };
+            let now = Now { state: &state, load, kept: (&dissipators, &[0.0; MOST_POINTS]) };
             let springs = Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 9e4;
             let expected = [Side::Right, Side::Left].map(|side| {
                 let residual = |(xi, e_p): (f64, f64)| -1e7 * e_p * (side.sign() * B - xi);
@@ -647,7 +648,7 @@ mod tests {
         for (phase, state) in
             [(Phase::Rocking(Side::Left), turned), (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..turned })]
         {
-            let now = Now { state: &state, load, dissipators: &Dissipators::NEW };
+            let now = Now { state: &state, load, kept: (&Dissipators::NEW, &[0.0; MOST_POINTS]) };
             let second = level.accelerations(phase, &now);
             let x = Instant::<f64, Modes>::of(&frame, phase, &state, load);
             let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
@@ -655,7 +656,7 @@ mod tests {
             let value = |gauge: &Gauge| gauge.at(&x);
             let (mut storey, gauges) = (0.0, frame.gauges());
             for (i, floor) in floors.iter().enumerate().rev() {
-                let lever = s * frame.base().B - floor.displacement(&u);
+                let lever = f64::from(s) * frame.base().B - floor.displacement(&u);
                 let along = floor.displacement(&second.u_ddot) + floor.height * second.theta_ddot;
                 let expected = along + theta_dot * theta_dot * lever + a_g * turn.cos - a_v * turn.sin;
                 assert_relative_eq!(value(&gauges.a[i]), expected, max_relative = 1e-12);

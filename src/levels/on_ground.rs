@@ -24,7 +24,7 @@ use crate::levels::start::{Start, Truncation};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::energy;
 use crate::mechanics::lateral::{Coordinates, Lateral};
-use crate::mechanics::restraint::{Dissipators, ties};
+use crate::mechanics::restraint::{Kept, ties};
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, add_each_product};
 use crate::structure::ground::Footing;
 use crate::structure::mode::{Mode, Modes};
@@ -70,8 +70,8 @@ pub(crate) struct Pushes {
 }
 
 impl Pushes {
-    /// Of the points of `ground` in this `contact`, which have settled as in `state`.
-    pub fn of<Q: Coordinates>(ground: &Foundation, contact: PressedPoints, state: &State<Q>) -> Pushes {
+    /// Of the points of `ground` in this `contact`, which have `settled` by so much.
+    pub fn of(ground: &Foundation, contact: PressedPoints, settled: &[f64]) -> Pushes {
         // Σ N = push − k y + k ξ sin θ − c ẏ + c ξ θ̇ cos θ, and Σ ξ N
         let (mut k, mut c, mut push) = ([0.0; 3], [0.0; 3], [0.0; 2]);
         for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i)) {
@@ -82,7 +82,7 @@ impl Pushes {
             add_moments(&mut k, point.xi, point.k);
             add_moments(&mut c, point.xi, point.c);
             if ground.yields {
-                let force = point.k * state.u.settlement(ground, i);
+                let force = point.k * settled[i];
                 push = [push[0] - force, push[1] - point.xi * force];
             }
         }
@@ -208,20 +208,20 @@ impl<V: Abreast> OnGround<V> {
         let velocity = start.local_error * velocity;
         let mut u_dot = Modes::each(structure, |_, mode| velocity * (m_t / mode.mass).sqrt());
         u_dot.set_footing(ground, Footing { y: velocity, sin: theta_dot, taken: power });
-        ground.beside().for_each(|place| u_dot.set(place, velocity));
+        ground.slide().into_iter().for_each(|place| u_dot.set(place, velocity));
         Truncation { u_dot, theta_dot }
     }
 
     /// Writes the motion with these pressed points into `arc` (F4–F7).
     fn motion(&self, contact: PressedPoints, start: &Start<Modes>, arc: &mut Arc<Modes>) {
-        let Start { state, a_g, a_top, a_v, .. } = start;
+        let &Start { ref state, ref a_g, ref a_top, ref a_v, settled, .. } = start;
         let structure = &self.subject.structure;
         let &Base { m_t, J0, S_res, g, .. } = structure.base();
         let (under, modes) = (structure.ground(), structure.modes().len());
-        let has_more = under.may_stay_moved();
+        let slide = under.slide();
         let span = start.interval.min(self.longest_span).min(under.longest_yielding(contact));
         let pushes @ Pushes { by, taken, lever, left_for_turning, .. } =
-            Pushes::of(under, contact, state).with_ties(&self.subject, start, contact);
+            Pushes::of(under, contact, settled).with_ties(&self.subject, start, contact);
         let mut push = pushes.push;
         let (ground, mut weight) = ([a_g.value, a_g.slope * span], [g + a_v.value, a_v.slope * span]);
         let GroundScratch { fours, left, right, squared, pushed, square } = &mut **self.scratch.borrow_mut();
@@ -254,8 +254,8 @@ impl<V: Abreast> OnGround<V> {
         let mut state = *state;
         state.u.set_footing(under, Footing { sin: sin_0, ..state.u.footing(under) });
         state.u_dot.set_footing(under, Footing { sin: turning, ..state.u_dot.footing(under) });
-        under.rest_beside(&mut state.u_dot);
-        under.settle(contact, &state.u, &mut state.u_dot, 0);
+        let rest = |rate: &mut Modes| slide.into_iter().for_each(|place| rate.set(place, 0.0));
+        rest(&mut state.u_dot);
         let truncation = self.truncation(start, span, contact.yields != 0);
         let per_span = 1.0 / span;
         arc.expand(&state, span, &truncation, |arc, order, per| {
@@ -287,7 +287,7 @@ impl<V: Abreast> OnGround<V> {
             square[MAX_ORDER - n] = V::each(|_| turning_square);
             let mut power = taken * of_middle + left_for_turning * of_turning;
             if contact.yields != 0 {
-                power += under.power_of_yielding(contact, arc, n);
+                power += under.power_of_yielding(contact, settled, arc, n);
             }
             let rates = arc.u_dot[n].footing(under);
             arc.u_dot[n].set_footing(under, Footing { taken: power, ..rates });
@@ -338,12 +338,7 @@ impl<V: Abreast> OnGround<V> {
                 under,
                 Footing { y: y_dot, sin: turning, taken: if contact.yields != 0 { power } else { 0.0 } },
             );
-            if has_more {
-                under.rest_beside(new_rate);
-            }
-            if contact.yields != 0 {
-                under.settle(contact, new, new_rate, order);
-            }
+            rest(new_rate);
             theta_dot
         });
     }
@@ -380,27 +375,25 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
         let ((sin, cos), ground) = (libm::sincos(state.theta), self.subject.structure.ground());
         state.u.set_footing(ground, Footing { sin, ..state.u.footing(ground) });
         state.u_dot.set_footing(ground, Footing { sin: state.theta_dot * cos, ..state.u_dot.footing(ground) });
-        if let Phase::OnGround(contact) = phase {
-            ground.admit(contact, &mut state);
+        if let (Some(place), Friction::Sticks) = (ground.slide(), phase.contact().friction) {
+            state.u_dot.set(place, 0.0);
         }
         state
     }
 
     /// Whether the energy above rest is too small to lift a point, to make one yield, or to make the base slide.
-    fn stays_down(&self, state: &State<Modes>, dissipators: &Dissipators) -> bool {
+    fn stays_down(&self, state: &State<Modes>, kept @ (_, settled): Kept) -> bool {
         let structure = &self.subject.structure;
         let (ground, base) = (structure.ground(), structure.base());
-        let of = |state: &State<Modes>| energy(structure, ground.contact(state, base), state, dissipators);
+        let of = |state: &State<Modes>| energy(structure, ground.contact(state, settled, base), state, kept);
         let (resting, room) = if ground.yields {
             let now = libm::sin(state.theta);
-            let Some(rest @ [y, sin]) = ground.at_rest(structure, now, &|i| state.u.settlement(ground, i)) else {
-                return false;
-            };
+            let Some(rest @ [y, sin]) = ground.at_rest(structure, now, &|i| settled[i]) else { return false };
             let mut u = Modes::each(structure, |_, mode| base.g * mode.gamma * sin / mode.stiffness);
-            ground.beside().for_each(|place| u.set(place, state.u.of(place)));
+            ground.slide().into_iter().for_each(|place| u.set(place, state.u.of(place)));
             u.set_footing(ground, Footing { y, sin, taken: 0.0 });
             let resting = State { u, u_dot: Modes::parts(structure, 0.0), theta: libm::asin(sin), theta_dot: 0.0 };
-            (resting, ground.least_yield(structure, rest, &|i| state.u.settlement(ground, i)))
+            (resting, ground.least_yield(structure, rest, &|i| settled[i]))
         } else {
             let still = Modes::parts(structure, 0.0);
             (ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base), self.least_lift)

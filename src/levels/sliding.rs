@@ -1,4 +1,4 @@
-//! A base with modes that slides on [ground that gives](crate::structure::ground), or flies, with the series of its settlements.
+//! A base with modes that slides on [ground that gives](crate::structure::ground), or flies, and points that yield.
 //!
 //! The way of the middle x is an unknown more than in [`on_ground`](super::on_ground). In the axes of the structure its matrix is an arrow.
 //! With β = a_g + ẍ, F = γ sin θ − β cos θ, G = γ cos θ + β sin θ, m' = m_t − Σ Γ S and the friction H = −ν N, ν = ±μ_c or 0 in flight:
@@ -9,7 +9,7 @@
 //! D θ̈ − S_res F − μ G = Σ m h e − θ̇ (θ̇ Σ m h u + 2 Σ m u u̇) − cos θ Σ ξ N
 //! ```
 //!
-//! Forces on floors and ties add the terms that they have there. A point that yields settles by ṡ = (f − q)/c, or by −v if c = 0 (S7).
+//! Forces on floors and ties add the terms that they have there.
 
 use crate::levels::modes::Abreast;
 use crate::levels::on_ground::{OnGround, Pushes};
@@ -17,62 +17,24 @@ use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::series::taylor::{LONGEST_SPAN, Series, ZERO, product};
-use crate::structure::ground::{ContactPoint, FOOTING, Footing, free_mass};
+use crate::structure::ground::{ContactPoint, Footing, free_mass};
 use crate::structure::mode::Modes;
-use crate::{Base, Foundation, Friction, Mode, PressedPoints, State, Structure};
-use std::ops::Range;
+use crate::{Base, Foundation, Mode, PressedPoints, State, Structure};
 
 impl Foundation {
-    /// The places of x and of the settlements among the lateral coordinates.
-    pub(crate) fn beside(&self) -> Range<usize> {
-        self.place + FOOTING..self.place + self.coordinates()
-    }
-
-    /// Writes 0 for the rates of what moves only while the base slides or a point yields.
-    #[inline]
-    pub(super) fn rest_beside(&self, rate: &mut Modes) {
-        self.beside().for_each(|place| rate.set(place, 0.0));
-    }
-
-    /// Writes coefficient `k` of the rates at which the points that yield settle, from this coefficient of the motion `u` and its `rate` (S7).
-    #[inline]
-    pub(super) fn settle(&self, contact: PressedPoints, u: &Modes, rate: &mut Modes, k: usize) {
-        for i in (0..self.points.len()).filter(|i| contact.yields(*i)) {
-            let ContactPoint { xi, k: stiffness, c, q } = self.points[i];
-            let (e, fall) = (u.footing(self).height(xi) + u.settlement(self, i), rate.footing(self).height(xi));
-            let capacity = if k == 0 { q } else { 0.0 };
-            let settles = if c > 0.0 { -(stiffness * e + capacity) / c - fall } else { -fall };
-            rate.set(self.settled() + i, settles);
-        }
-    }
-
-    /// Writes 0 for the rates of what does not move with these pressed points, the rates at which points settle, and how far points without a
-    /// dashpot have settled that carry their capacity.
-    pub(super) fn admit(&self, contact: PressedPoints, state: &mut State<Modes>) {
-        let x_dot = state.u_dot.slide(self).filter(|_| contact.friction != Friction::Sticks);
-        self.rest_beside(&mut state.u_dot);
-        self.slide().zip(x_dot).into_iter().for_each(|(place, x_dot)| state.u_dot.set(place, x_dot));
-        for (i, point) in self.points.iter().enumerate().filter(|(i, point)| contact.yields(*i) && point.c == 0.0) {
-            let settled = -point.q / point.k - state.u.footing(self).height(point.xi);
-            state.u.set(self.settled() + i, settled);
-        }
-        self.settle(contact, &state.u, &mut state.u_dot, 0);
-    }
-
-    /// Coefficient `n` of the power that the dashpots of the points that yield take, W.
-    pub(super) fn power_of_yielding(&self, contact: PressedPoints, arc: &Arc<Modes>, n: usize) -> f64 {
-        let of_point = |i: usize| {
-            let rate = |u_dot: &Modes| u_dot.footing(self).height(self.points[i].xi) + u_dot.settlement(self, i);
-            let rates = || arc.u_dot[..=n].iter().map(rate);
-            self.points[i].c * rates().zip(rates().rev()).map(|(a, b)| a * b).sum::<f64>()
+    /// Coefficient `n` of the power c ė² that the dashpots of points take which yield over `arc`, W.
+    pub(super) fn power_of_yielding(&self, contact: PressedPoints, settled: &[f64], arc: &Arc<Modes>, n: usize) -> f64 {
+        let of_point = |(i, point): (usize, &ContactPoint)| {
+            let rate = point.creep(arc.u[0].footing(self).height(point.xi) + settled[i]);
+            point.c * rate * rate * point.fades(2.0 * arc.span).nth(n).unwrap_or(0.0)
         };
-        (0..self.points.len()).filter(|i| contact.yields(*i)).map(of_point).sum()
+        self.points.iter().enumerate().filter(|(i, _)| contact.yields(*i)).map(of_point).sum()
     }
 
-    /// The longest span of a series while points yield, s: a point settles in the time c/k.
+    /// The longest span of a series while points yield, s: the rate of a point falls in the time c/k, which all orders together show.
     pub(super) fn longest_yielding(&self, contact: PressedPoints) -> f64 {
         let times = (0..self.points.len()).filter(|i| contact.yields(*i)).map(|i| self.points[i].c / self.points[i].k);
-        times.filter(|time| *time > 0.0).fold(f64::INFINITY, f64::min) * LONGEST_SPAN
+        times.filter(|time| *time > 0.0).fold(f64::INFINITY, f64::min) * LONGEST_SPAN / 2.0
     }
 }
 
@@ -89,13 +51,13 @@ pub(crate) fn mobility<Q: Coordinates>(structure: &Structure, state: &State<Q>) 
 impl<V: Abreast> OnGround<V> {
     /// Writes the motion of a base that slides or flies with these pressed points into `arc` (S3).
     pub(super) fn slide(&self, contact: PressedPoints, start: &Start<Modes>, arc: &mut Arc<Modes>) {
-        let Start { state, a_g, a_top, a_v, .. } = start;
+        let &Start { ref state, a_g, a_top, a_v, settled, .. } = start;
         let structure = &self.subject.structure;
         let (&Base { m_t, J0, S_res, g, .. }, S_1) = (structure.base(), structure.body().S_1);
         let (under, modes) = (structure.ground(), structure.modes());
         let nu = contact.friction.sign() * under.mu_c.unwrap_or(0.0);
         let span = start.interval.min(self.longest_slide).min(under.longest_yielding(contact));
-        let (carried, free) = (Pushes::of(under, contact, state), free_mass(structure.base(), modes));
+        let (carried, free) = (Pushes::of(under, contact, settled), free_mass(structure.base(), modes));
         let points = carried.with_ties(&self.subject, start, contact);
         let ramp = |value: f64, slope: f64| [value, slope * span];
         let (ground, weight) = (ramp(a_g.value, a_g.slope), ramp(g + a_v.value, a_v.slope));
@@ -108,14 +70,9 @@ impl<V: Abreast> OnGround<V> {
         let sum = |of: &dyn Fn(usize) -> f64| (0..modes.len()).map(of).sum::<f64>();
         let (sin_0, cos_0) = libm::sincos(state.theta);
         let mut state = *state;
-        let settled = state.u.footing(under);
-        state.u.set_footing(under, Footing { sin: sin_0, ..settled });
+        state.u.set_footing(under, Footing { sin: sin_0, ..state.u.footing(under) });
         state.u_dot.set_footing(under, Footing { sin: state.theta_dot * cos_0, ..state.u_dot.footing(under) });
         let place = under.slide().expect("the base may slide");
-        let x_dot = state.u_dot.slide(under).expect("the base may slide");
-        under.rest_beside(&mut state.u_dot);
-        state.u_dot.set(place, x_dot);
-        under.settle(contact, &state.u, &mut state.u_dot, 0);
         let mut series: [Series; 13] = [ZERO; 13];
         let [sin, cos, mu, inertia, N, M, normal, F, G, square, turning, middle, forced] = &mut series;
         let mu_at = |u: &Modes| sum(&|j| modes[j].gamma * u.of(j));
@@ -176,7 +133,7 @@ impl<V: Abreast> OnGround<V> {
             let (of_middle, of_turning) = (product(middle, middle, n), product(turning, turning, n));
             let power = points.taken * of_middle
                 + points.left_for_turning * of_turning
-                + under.power_of_yielding(contact, arc, n);
+                + under.power_of_yielding(contact, settled, arc, n);
             let along = |j: usize| {
                 let mode = &modes[j];
                 mode.share * F[n] + times(push(j), cos) + spun(j) - elastic(j) - mode.height * theta_ddot
@@ -191,11 +148,9 @@ impl<V: Abreast> OnGround<V> {
             turning[order] = product(&arc.theta_dot, cos, order);
             let y_dot = (gamma - at(weight, n)) * per;
             new_rate.set_footing(under, Footing { y: y_dot, sin: turning[order], taken: power });
-            under.rest_beside(new_rate);
             new_rate.set(place, (beta - at(ground, n)) * per);
             let of = new.footing(under);
             new.set_footing(under, Footing { taken: power * per, ..of });
-            under.settle(contact, new, new_rate, order);
             new_theta_dot
         });
     }

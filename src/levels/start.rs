@@ -5,6 +5,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::restraint::Dissipators;
 use crate::numbers::Real;
 use crate::series::taylor::{LONGEST_SPAN, MAX_ORDER, NEGLIGIBLE, reciprocal};
+use crate::structure::ground::{NONE_SETTLED, Settlements};
 use crate::{Base, OneMass, Ramp, State};
 
 /// Fewest orders of a step, so that terms that vanish at rest cannot end it early.
@@ -23,6 +24,8 @@ pub struct Start<'a, Q = f64> {
     pub a_v: Ramp,
     /// The dissipators there.
     pub dissipators: &'a Dissipators,
+    /// How far contact points have settled for good, m.
+    pub settled: &'a Settlements,
     /// How far it may go at most, s.
     pub interval: f64,
     /// Truncation error over the largest velocities that the step can bring.
@@ -33,7 +36,8 @@ pub struct Start<'a, Q = f64> {
 impl<Q: Coordinates> Default for Start<'_, Q> {
     fn default() -> Self {
         let (state, a_g, a_top, a_v) = Default::default();
-        Start { state, a_g, a_top, a_v, dissipators: &Dissipators::NEW, interval: 0.0, local_error: 0.0 }
+        let dissipators = &Dissipators::NEW;
+        Start { state, a_g, a_top, a_v, dissipators, settled: &NONE_SETTLED, interval: 0.0, local_error: 0.0 }
     }
 }
 

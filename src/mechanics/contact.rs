@@ -3,30 +3,50 @@
 use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
-use crate::mechanics::restraint::{self, Dissipators, Tie, places};
+use crate::mechanics::restraint::{self, Dissipators, Kept, Tie, places};
 use crate::series::bisection::last_where;
-use crate::structure::ground::{ContactPoint, FOOTING, Footing, overturns};
+use crate::series::taylor::reciprocal;
+use crate::structure::ground::{ContactPoint, Footing, Settlements, overturns};
 use crate::structure::mode::Modes;
 use crate::{Base, Foundation, Friction, Load, Phase, PressedPoints, Side, State, Structure, Ties};
 
-/// −e and f/k of each point, m (S5).
-fn heights<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = [f64; 2]> {
-    let (footing, u) = ([state.u, state.u_dot].map(|q| q.footing(foundation)), state.u);
+/// −e and f/k of each point, m (S5): both are positive if the point is pressed, which yields at q/k.
+pub(crate) fn heights<Q: Coordinates>(
+    foundation: &Foundation,
+    state: &State<Q>,
+    settled: &[f64],
+) -> impl Iterator<Item = [f64; 2]> {
+    let footing = [&state.u, &state.u_dot].map(|q| q.footing(foundation));
     foundation.points.iter().enumerate().map(move |(i, &ContactPoint { xi, k, c, .. })| {
         let [e, rate] = footing.map(|of| of.height(xi));
-        let e = if foundation.yields { e + u.settlement(foundation, i) } else { e };
+        let e = e + settled[i];
         [-e, -(e + c / k * rate)]
     })
 }
 
-/// min(−e, f/k) of each point, m: positive if the point is pressed.
-pub(crate) fn margins<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
-    heights(foundation, state).map(|[depth, push]| depth.min(push))
-}
+/// While a point yields, its spring and dashpot carry q together, so that e = −q/k + (e_0 + q/k) exp(−k t/c), whatever the structure does.
+impl ContactPoint {
+    /// k/c, 1/s; 0 without a dashpot, where e does not change.
+    fn fading(&self) -> f64 {
+        if self.c > 0.0 { self.k / self.c } else { 0.0 }
+    }
 
-/// (q − f)/k of each point, m: what it can be pressed more before it yields.
-pub(crate) fn reserves<Q: Coordinates>(foundation: &Foundation, state: &State<Q>) -> impl Iterator<Item = f64> {
-    heights(foundation, state).zip(&foundation.points).map(|([_, push], point)| point.q / point.k - push)
+    /// ė (m/s) at the height `e` (m) above the settled level.
+    pub(crate) fn creep(&self, e: f64) -> f64 {
+        -(e + self.q / self.k) * self.fading()
+    }
+
+    /// e (m) after a `time` (s) from `e` (m) on.
+    pub(crate) fn crept(&self, e: f64, time: f64) -> f64 {
+        let end = -self.q / self.k;
+        if self.c > 0.0 { end + (e - end) * libm::exp(-self.fading() * time) } else { end }
+    }
+
+    /// The coefficients over `span` (s) of exp(−k t/c).
+    pub(crate) fn fades(&self, span: f64) -> impl Iterator<Item = f64> {
+        let fades = -self.fading() * span;
+        (1..).scan(1.0, move |next, k| Some(std::mem::replace(next, *next * fades * reciprocal(k))))
+    }
 }
 
 /// Rotations, each half of the one before, within which a structure may stay.
@@ -49,12 +69,9 @@ impl Foundation {
         let (mut begun, turning) = (*state, state.theta_dot * cos);
         begun.u.set_footing(self, Footing { y, sin, taken: 0.0 });
         begun.u_dot.set_footing(self, Footing { y: slope * turning, sin: turning, taken: 0.0 });
-        for place in self.place + FOOTING..self.place + self.coordinates() {
+        if let Some(place) = self.slide() {
             begun.u.set(place, 0.0);
             begun.u_dot.set(place, 0.0);
-        }
-        for (i, &ContactPoint { xi, k, q, .. }) in self.points.iter().enumerate().filter(|_| self.yields) {
-            begun.u.set(self.settled() + i, (xi * sin - y - q / k).max(0.0));
         }
         begun
     }
@@ -64,6 +81,9 @@ impl Foundation {
     /// without inertia from the rotation of the sine `now`, or from the tilt of the points where it falls over from there. None if it falls
     /// over from both.
     pub(crate) fn at_rest(&self, structure: &Structure, now: f64, s: &dyn Fn(usize) -> f64) -> Option<[f64; 2]> {
+        if (0..self.points.len()).all(|i| s(i) == 0.0) {
+            return Some([self.y_s, 0.0]);
+        }
         let (weighs, leans) = overturns(structure.base(), structure.body(), structure.modes());
         let turned_back = |sin: f64| {
             let sin = sin.clamp(-1.0, 1.0);
@@ -121,10 +141,40 @@ impl Foundation {
         least
     }
 
+    /// How far points have settled under a structure that was moved slowly to `state`.
+    pub(crate) fn settled<Q: Coordinates>(&self, state: &State<Q>) -> Settlements {
+        let footing = state.u.footing(self);
+        let beyond = |point: &ContactPoint| (-footing.height(point.xi) - point.q / point.k).max(0.0);
+        std::array::from_fn(|i| self.points.get(i).map_or(0.0, beyond))
+    }
+
+    /// The rates (m/s) at which points with this `contact`, on ground that has `settled` by so much (m), settle for good while the base is and
+    /// moves like this (S7).
+    pub(crate) fn settling(
+        &self,
+        contact: PressedPoints,
+        [footing, rates]: [Footing; 2],
+        settled: &[f64],
+    ) -> Settlements {
+        std::array::from_fn(|i| match self.points.get(i) {
+            Some(point) if contact.yields(i) => {
+                point.creep(footing.height(point.xi) + settled[i]) - rates.height(point.xi)
+            }
+            _ => 0.0,
+        })
+    }
+
+    /// Lets points without a dashpot that yield at this place of the base have settled as far as their capacity holds it.
+    pub(crate) fn hold(&self, contact: PressedPoints, footing: Footing, settled: &mut [f64]) {
+        for (i, point) in self.points.iter().enumerate().filter(|(i, point)| contact.yields(*i) && point.c == 0.0) {
+            settled[i] = -point.q / point.k - footing.height(point.xi);
+        }
+    }
+
     /// The points that carry the base in `state`.
-    pub(crate) fn contact<Q: Coordinates>(&self, state: &State<Q>, base: &Base) -> PressedPoints {
+    pub(crate) fn contact<Q: Coordinates>(&self, state: &State<Q>, settled: &[f64], base: &Base) -> PressedPoints {
         let bits = |is_so: &dyn Fn(usize, [f64; 2]) -> bool| -> u32 {
-            heights(self, state).enumerate().map(|(i, of)| u32::from(is_so(i, of)) << i).sum()
+            heights(self, state, settled).enumerate().map(|(i, of)| u32::from(is_so(i, of)) << i).sum()
         };
         let pressed = bits(&|_, [depth, push]| depth > 0.0 && push > 0.0);
         let yields = bits(&|i, [_, push]| self.points[i].k * push >= self.points[i].q * (1.0 - ON_CAPACITY)) & pressed;
@@ -161,7 +211,12 @@ impl Foundation {
 /// ```
 ///
 /// A slack tendon has −P_0²/(2 k_t). A base that slides adds ½ m_t ẋ² + ẋ [cos θ (Σ Γ u̇ + S_1 θ̇) − μ θ̇ sin θ].
-pub fn energy(structure: &Structure, contact: PressedPoints, state: &State<Modes>, dissipators: &Dissipators) -> f64 {
+pub(crate) fn energy(
+    structure: &Structure,
+    contact: PressedPoints,
+    state: &State<Modes>,
+    (dissipators, settled): Kept,
+) -> f64 {
     let x = Instant::<f64, Modes>::of(structure, Phase::OnGround(contact), state, Load::NONE);
     let Some(ground @ Foundation { points, y_s, .. }) = structure.foundation() else { return mechanical(&x) };
     let (&Base { m_t, g, ties, .. }, S_1) = (structure.base(), structure.body().S_1);
@@ -169,7 +224,7 @@ pub fn energy(structure: &Structure, contact: PressedPoints, state: &State<Modes
     let (y, y_dot, turn) = (state.u.footing(ground).y, state.u_dot.footing(ground).y, x.turn);
     let across = turn.sin * (rate + S_1 * x.theta_dot) + offset * x.theta_dot * turn.cos;
     let pressed = points.iter().enumerate().filter(|(i, _)| contact.is_pressed(*i));
-    let e = |i: usize, xi: f64| y - xi * turn.sin + state.u.settlement(ground, i);
+    let e = |i: usize, xi: f64| y - xi * turn.sin + settled[i];
     let of_points: f64 = pressed.map(|(i, point)| 0.5 * point.k * e(i, point.xi).powi(2)).sum();
     let x_dot = state.u_dot.slide(ground).unwrap_or(0.0);
     let along = turn.cos * (rate + S_1 * x.theta_dot) - offset * x.theta_dot * turn.sin;

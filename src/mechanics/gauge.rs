@@ -24,7 +24,7 @@ impl Gauge {
         if !self.has_feedthrough() {
             return value;
         }
-        let ground = x.theta_dot * x.theta_dot * (x.s * base.B) + x.a_g * x.turn.cos - x.a_v * x.turn.sin;
+        let ground = x.theta_dot * x.theta_dot * x.pivot() + x.a_g * x.turn.cos - x.a_v * x.turn.sin;
         value + x.theta_ddot * height + ground * share
     }
 }

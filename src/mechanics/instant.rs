@@ -4,7 +4,7 @@ use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Angle, Number, Turn};
-use crate::structure::ground::Footing;
+use crate::structure::ground::{Footing, NONE_SETTLED, Settlements};
 use crate::{Base, Foundation, Mode, Phase, PressedPoints, State, Structure};
 
 /// The structure at an instant, with lateral coordinates `Q`.
@@ -12,9 +12,11 @@ use crate::{Base, Foundation, Mode, Phase, PressedPoints, State, Structure};
 pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     pub structure: &'a Structure,
     /// s: +1 about the right pivot, −1 about the left one; 0 on ground that gives.
-    pub s: f64,
+    pub s: f32,
     /// The pressed contact points of the ground.
     pub contact: PressedPoints,
+    /// The settlements of the contact points for good, which forces of points read.
+    pub settled: &'a Settlements,
     /// Viscous damping as a fraction of the damping in full contact.
     pub damping: f64,
     /// u, m.
@@ -65,14 +67,15 @@ impl Base {
 }
 
 impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
-    /// The structure in `phase` and `state` under `load`; θ̈ is left at 0.
+    /// The structure in `phase` and `state` under `load`; θ̈ is left at 0, and points have not settled.
     #[inline]
     pub(crate) fn of(structure: &'a Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> Self {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
-        let (s, damping, turn) = (phase.properties().pivot, structure.base().damping(phase), theta.turn());
+        let (s, damping, turn) = (phase.properties().pivot as f32, structure.base().damping(phase), theta.turn());
         let contact = if Q::IS_ONE { PressedPoints::default() } else { phase.contact() };
-        Instant { structure, s, contact, damping, u, u_dot, theta, theta_dot, theta_ddot: 0.0, turn, a_g, F_t, a_v }
+        let (settled, theta_ddot) = (&NONE_SETTLED, 0.0);
+        Instant { structure, s, contact, settled, damping, u, u_dot, theta, theta_dot, theta_ddot, turn, a_g, F_t, a_v }
     }
 }
 
@@ -86,7 +89,7 @@ impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Duals<Q>> {
         &Second { u_ddot, theta_ddot }: &Second<f64, Q>,
         load: LinearLoad<Q>,
     ) -> Self {
-        let Instant { s, u, u_dot, theta, theta_dot, turn, .. } =
+        let Instant { s, settled, u, u_dot, theta, theta_dot, turn, .. } =
             Instant::<f64, Q>::of(structure, phase, state, load.value);
         let moves = if phase.properties().is_over { 0.0 } else { 1.0 };
         let dual = |value, rate: f64| Dual { value, rate: moves * rate };
@@ -96,6 +99,7 @@ impl<'a, Q: Coordinates> Instant<'a, Dual<f64>, Duals<Q>> {
             structure,
             s,
             contact: phase.contact(),
+            settled,
             damping: structure.base().damping(phase),
             u: lateral(u, u_dot),
             u_dot: lateral(u_dot, u_ddot),
@@ -120,7 +124,7 @@ impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
     /// Place of the pivot, sB, m.
     #[inline(always)]
     pub(crate) fn pivot(&self) -> f64 {
-        self.s * self.base().B
+        f64::from(self.s) * self.base().B
     }
 
     /// The same with the accelerations `second`, of the base on ground that gives too.

@@ -8,7 +8,7 @@ use crate::numbers::dual::Dual;
 use crate::numbers::most::Most;
 use crate::series::extremes::{OFF_CHORD, off_chord};
 use crate::series::taylor::evaluate;
-use crate::structure::ground::Footing;
+use crate::structure::ground::{Footing, NONE_SETTLED, Settlements};
 use crate::structure::mode::{Floor, MOST_MODES, Mode, Modes};
 use crate::{Foundation, Structure};
 use serde::Serialize;
@@ -34,12 +34,6 @@ pub trait Lateral<N: Number>: Copy {
     #[inline(always)]
     fn slide(&self, ground: &Foundation) -> Option<N> {
         ground.slide().map(|place| self.of(place))
-    }
-
-    /// The settlement of point `i` of this `ground` for good, m, or its rate.
-    #[inline(always)]
-    fn settlement(&self, ground: &Foundation, i: usize) -> N {
-        if ground.yields { self.of(ground.settled() + i) } else { N::constant(0.0) }
     }
 
     /// Of forces, what acts on mass that no mode carries, if there is such: the force, and its moment about the height of the pivots.
@@ -82,6 +76,21 @@ pub trait Lateral<N: Number>: Copy {
 pub trait Coordinates:
     Lateral<f64, Of = Self> + Debug + Default + PartialEq + Send + Serialize + DeserializeOwned + 'static
 {
+    /// Room for the settlements of contact points for good: none for one mass, which no ground gives under.
+    type Settled: AsRef<[f64]>
+        + AsMut<[f64]>
+        + Copy
+        + Debug
+        + Default
+        + PartialEq
+        + Send
+        + Sync
+        + Serialize
+        + DeserializeOwned;
+
+    /// The settlements in this room; 0 if there is none.
+    fn settlements(settled: &Self::Settled) -> &Settlements;
+
     /// All coordinates are 0.
     const ZERO: Self;
 
@@ -219,6 +228,13 @@ impl<N: Number> Lateral<N> for N {
 }
 
 impl Coordinates for f64 {
+    type Settled = [f64; 0];
+
+    #[inline(always)]
+    fn settlements(_: &[f64; 0]) -> &Settlements {
+        &NONE_SETTLED
+    }
+
     const ZERO: f64 = 0.0;
 
     const IS_ONE: bool = true;
@@ -311,6 +327,13 @@ impl Lateral<f64> for Modes {
 }
 
 impl Coordinates for Modes {
+    type Settled = Settlements;
+
+    #[inline(always)]
+    fn settlements(settled: &Settlements) -> &Settlements {
+        settled
+    }
+
     const ZERO: Modes = Modes { count: 0, of: [0.0; MOST_MODES], rest: [0.0; 2] };
 
     #[inline(always)]

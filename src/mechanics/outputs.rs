@@ -15,7 +15,7 @@
 use crate::mechanics::instant::{Instant, MassPoint, uplift};
 use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::Dissipators;
+use crate::mechanics::restraint::{Dissipators, Kept};
 use crate::mechanics::shown::{Legend, Place, UNITS};
 use crate::numbers::dual::Dual;
 use crate::numbers::{Number, Ordered};
@@ -460,26 +460,35 @@ impl Output {
         }
     }
 
-    /// The output if it adds up over a motion beside the state.
-    pub(crate) fn added_up(self, &Dissipators { slip, friction, settling, .. }: &Dissipators) -> Option<f64> {
+    /// The output of `structure` if it adds up over a motion beside the state.
+    pub(crate) fn added_up(self, structure: &Structure, (of, s): Kept) -> Option<f64> {
         match self {
-            slip_path => Some(slip),
-            E_friction => Some(friction),
-            E_plastic => Some(settling),
+            slip_path => Some(of.slip),
+            E_friction => Some(of.friction),
+            E_plastic => Some(of.settling),
+            Output::s(i) => s.get(i).copied(),
+            settled => structure.foundation().map(|ground| ground.residual(|i| s[i], 0)),
+            tilt => structure.foundation().map(|ground| ground.residual(|i| s[i], 1)),
             _ => None,
         }
     }
 
-    /// The rate in the motion `x` of an output that adds up: |ẋ| and μ_c N |ẋ| while the base slides, and Σ q ṡ.
+    /// The rate in the motion `x` of an output that adds up: |ẋ| and μ_c N |ẋ| while the base slides, and ṡ, the same of the sums of s and
+    /// Σ q ṡ.
     pub(crate) fn added_up_rate<Q: Coordinates>(self, x: &Instant<Dual<f64>, Duals<Q>>) -> Option<f64> {
-        self.added_up(&Dissipators::NEW)?;
+        self.added_up(x.structure, (&Dissipators::NEW, x.settled))?;
         let Some(ground) = <Q as Lateral<f64>>::foundation(x.structure) else { return Some(0.0) };
+        let motion = [x.u.value, x.u_dot.value].map(|of| of.footing(ground));
+        let rates = ground.settling(x.contact, motion, x.settled);
         let (points, mu_c) = (0..ground.points.len(), ground.mu_c.unwrap_or(0.0));
         let slip = x.contact.friction.sign() * x.u_dot.slide(ground).map_or(0.0, |rate| rate.value);
         Some(match self {
             slip_path => slip,
             E_friction => slip * mu_c * points.map(|i| N(i).on_ground(x, ground).value).sum::<f64>(),
-            _ => points.map(|i| ground.points[i].q * x.u_dot.settlement(ground, i).value).sum(),
+            Output::s(i) => rates[i],
+            settled => ground.residual(|i| rates[i], 0),
+            tilt => ground.residual(|i| rates[i], 1),
+            _ => points.map(|i| ground.points[i].q * rates[i]).sum(),
         })
     }
 
@@ -496,14 +505,11 @@ impl Output {
             N(i) if x.contact.yields(i) => K::constant(points[i].q),
             N(i) if x.contact.is_pressed(i) => {
                 let [e, rate] = [footing, rates].map(|of| of.height(points[i].xi));
-                let e = if foundation.yields { e + x.u.settlement(foundation, i) } else { e };
+                let e = if foundation.yields { e + K::constant(x.settled[i]) } else { e };
                 -(e * points[i].k + rate * points[i].c)
             }
             Output::x => x.u.slide(foundation).unwrap_or(K::constant(f64::NAN)),
             x_dot => x.u_dot.slide(foundation).unwrap_or(K::constant(f64::NAN)),
-            Output::s(i) => x.u.settlement(foundation, i),
-            settled => foundation.residual(|i| x.u.settlement(foundation, i), 0),
-            tilt => foundation.residual(|i| x.u.settlement(foundation, i), 1),
             edge(side) => {
                 let each = foundation.of_edge(side, x.base().B);
                 let each = each.map(|(i, factor)| N(i).on_ground(x, foundation) * factor);
@@ -516,9 +522,8 @@ impl Output {
             }
             N_left => N(0).on_ground(x, foundation),
             N_right => N(points.len() - 1).on_ground(x, foundation),
-            Output::uplift | settlement | pressure | F_d1 | F_d2 | slip_path | E_friction | E_plastic => {
-                K::constant(f64::NAN)
-            }
+            Output::uplift | settlement | pressure | F_d1 | F_d2 => K::constant(f64::NAN),
+            slip_path | E_friction | settled | tilt | E_plastic | Output::s(_) => K::constant(f64::NAN),
             _ => unreachable!("{self:?} has the same formula on all ground"),
         }
     }

@@ -10,14 +10,15 @@ use crate::numbers::most::Most;
 use crate::series::extremes::off_chord;
 use crate::series::taylor::{ORDERS, ZERO, evaluate};
 use crate::structure::gauge::Reach;
+use crate::structure::ground::{NONE_SETTLED, Settlements};
 use crate::structure::mode::Modes;
 use crate::{Base, Foundation, Gauge, Output, Phase, PressedPoints, Ramp, Side, State, Structure};
 
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Magnitudes<'a, Q> {
-    /// The motion over a polynomial and the ground acceleration, if an output depends on the ground acceleration, or on ground that gives.
-    pub arc: Option<(&'a Arc<Q>, Ramp)>,
+    /// The motion over a polynomial, the ground acceleration and how far points have settled, if an output depends on the ground acceleration, or on ground that gives.
+    pub arc: Option<(&'a Arc<Q>, Ramp, &'a Settlements)>,
     /// Part of the viscous damping in full contact.
     pub damping: f64,
     pub u: Q,
@@ -90,6 +91,7 @@ impl<Q: Coordinates> Magnitudes<'_, Q> {
         Instant {
             structure,
             s: 1.0,
+            settled: &NONE_SETTLED,
             contact: PressedPoints { pressed: u32::MAX, ..PressedPoints::default() },
             damping,
             u: Mosts(u),
@@ -237,12 +239,15 @@ impl Reach {
     #[inline(always)]
     pub(crate) fn bound<Q: Coordinates>(&self, output: Output, structure: &Structure, most: &Magnitudes<Q>) -> f64 {
         let Reach { a_g, push, .. } = self;
-        if let (Some((arc, _)), Some(foundation)) = (most.arc, Q::foundation(structure)) {
+        if let (Some((arc, _, settled)), Some(foundation)) = (most.arc, Q::foundation(structure)) {
             let base = structure.base();
             let bound = |of: Output| {
-                let point = if let Output::N(i) = of { Some(i).filter(|_| foundation.yields) } else { None };
-                let most = most_of_height(arc, foundation, of.of_height(base, foundation)?, point);
-                Some(point.map_or(most, |i| most.min(foundation.points[i].q)))
+                let [xi, k, c, offset] = of.of_height(base, foundation)?;
+                let (offset, limit) = match of {
+                    Output::N(i) if foundation.yields => (k * settled[i], foundation.points[i].q),
+                    _ => (offset, f64::INFINITY),
+                };
+                Some(most_of_height(arc, foundation, [xi, k, c, offset]).min(limit))
             };
             let and = |sum: Option<f64>, (i, factor)| Some(sum.unwrap_or(0.0) + bound(Output::N(i))? * factor);
             let edge = if let Output::edge(side) = output { Some(foundation.of_edge(side, base.B)) } else { None };
@@ -255,10 +260,10 @@ impl Reach {
             _ if most.theta == f64::INFINITY => f64::INFINITY,
             _ if self.is_curved => most.bound(output, structure),
             (None, _) => self.bound_together(most),
-            (Some(_), Some(arc)) => {
+            (Some(_), Some((arc, a_g, _))) => {
                 let gauge = output.gauge(structure).expect("a gauge alone reads the ground acceleration");
                 let place = Q::foundation(structure).and_then(Foundation::slide);
-                elastic() + gauge.turning(structure.base(), arc, most, place)
+                elastic() + gauge.turning(structure.base(), (arc, a_g), most, place)
             }
             (Some(a_g), None) if most.theta == 0.0 => elastic() + a_g * most.a_g,
             _ => f64::INFINITY,
@@ -318,20 +323,12 @@ impl Gauge {
     }
 }
 
-/// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives, above its settlement if it is of a `point`. y and ξ sin θ cancel in e: their series
-/// are added before they are bounded.
-fn most_of_height<Q: Coordinates>(
-    arc: &Arc<Q>,
-    ground: &Foundation,
-    [xi, k, c, offset]: [f64; 4],
-    point: Option<usize>,
-) -> f64 {
+/// Bound of the positive part of offset + k e + c ė of the height e at ξ, on ground that gives. y and ξ sin θ cancel in e: their series are
+/// added before they are bounded.
+fn most_of_height<Q: Coordinates>(arc: &Arc<Q>, ground: &Foundation, [xi, k, c, offset]: [f64; 4]) -> f64 {
     let mut series = ZERO;
     let height = |q: &Q| q.footing(ground).height(xi);
     series.iter_mut().zip(arc.used(&arc.u)).for_each(|(of, u)| *of = k * height(u));
-    if let Some(i) = point {
-        series.iter_mut().zip(arc.used(&arc.u)).for_each(|(of, u)| *of += k * u.settlement(ground, i));
-    }
     if c != 0.0 {
         series.iter_mut().zip(arc.used(&arc.u_dot)).for_each(|(of, u_dot)| *of += c * height(u_dot));
     }

@@ -20,6 +20,7 @@ use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{Series, ZERO, product};
 use crate::series::terms::Terms;
+use crate::structure::ground::{Footing, Settlements};
 use crate::{Base, Foundation, Side, Ties};
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,9 @@ pub struct Dissipators {
     /// Energy that the ground has taken by settling for good, J.
     pub settling: f64,
 }
+
+/// What a motion keeps beside its state: the dissipators, and how far contact points have settled for good, m.
+pub(crate) type Kept<'a> = (&'a Dissipators, &'a Settlements);
 
 /// Forces of the restraints, N; a force that pulls is positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -106,6 +110,13 @@ pub(crate) struct Tie {
 }
 
 impl Tie {
+    /// The force on ground that gives, N, at this place of the base with these rates.
+    #[inline(always)]
+    fn force_on_ground<N: Number>(&self, footing: &Footing<N>, rates: &Footing<N>) -> N {
+        let &Tie { lever, force, stiffness, damping } = self;
+        N::constant(force) + footing.height(lever) * stiffness + rates.height(lever) * damping
+    }
+
     /// The force F = F_0 + l (k · chord + c · rate of the chord), N.
     #[inline]
     fn force<N: Number>(&self, length: N, rate: N) -> N {
@@ -281,15 +292,13 @@ pub(crate) fn restraints<N: Angle, Q: Lateral<N>>(
     let [P_t, F_d1, F_d2] = match Q::foundation(x.structure) {
         Some(ground) => {
             let [footing, rates] = x.footing(ground);
-            let force = |Tie { lever, force, stiffness, damping }| {
-                N::constant(force) + footing.height(lever) * stiffness + rates.height(lever) * damping
-            };
-            let [tendon, first, second] = ties(x.base(), dissipators, ground.y_s, x.contact.is_slack);
-            [force(tendon), force(first), force(second)] // a map would copy series
+            let ties = ties(x.base(), dissipators, ground.y_s, x.contact.is_slack);
+            let force = |j: usize| ties[j].force_on_ground(&footing, &rates);
+            [force(0), force(1), force(2)] // a map would copy series
         }
         None => {
             let chord = angles.chord(x.theta, x.theta_dot);
-            let ties = Restraint::about(x.base(), Side::of(x.s), dissipators).ties;
+            let ties = Restraint::about(x.base(), Side::of(x.s.into()), dissipators).ties;
             ties.map(|tie| tie.force(chord.length, chord.rate))
         }
     };
@@ -303,7 +312,7 @@ pub(crate) fn pulls<N: Angle, Q: Lateral<N>>(x: &Instant<N, Q>, angles: Angles, 
         let Restraints { P_t, F_d1, F_d2 } = restraints(x, angles, dissipators);
         return [P_t + F_d1 + F_d2, N::constant(0.0), (F_d1 - F_d2) * x.base().ties.xi_d * x.turn.cos];
     }
-    let Restraint { base, side, ties } = Restraint::about(x.base(), Side::of(x.s), dissipators);
+    let Restraint { base, side, ties } = Restraint::about(x.base(), Side::of(x.s.into()), dissipators);
     let (middle, chord) = (side.sign() * base.B, angles.chord(x.theta, x.theta_dot));
     let force = |tie: Tie| tie.force(chord.length, chord.rate);
     let (pull, moment) = (force(sum(&ties, |_| 1.0)), force(sum(&ties, |tie| middle - tie.lever)));

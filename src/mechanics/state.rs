@@ -354,7 +354,7 @@ impl Structure {
             let rate = (self.base().g * settled).sqrt();
             for (of, y) in [(&mut usual.u, settled), (&mut usual.u_dot, rate)] {
                 of.set_footing(foundation, Footing { y, ..of.footing(foundation) });
-                foundation.beside().for_each(|place| of.set(place, y));
+                foundation.slide().into_iter().for_each(|place| of.set(place, y));
             }
         }
         usual

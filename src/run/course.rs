@@ -78,7 +78,7 @@ impl fmt::Display for Ending {
 
 /// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finish<Q = f64> {
+pub struct Finish<Q: Coordinates = f64> {
     /// How it ended.
     pub ending: Ending,
     /// The motion then.

@@ -16,7 +16,7 @@ use crate::mechanics::instant::Second;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
-use crate::structure::ground::Footing;
+use crate::structure::ground::{Footing, NONE_SETTLED, Settlements};
 use crate::{Engine, Friction, GroundMotion, Motion, Phase, PressedPoints, Side, State};
 use serde::{Deserialize, Serialize};
 
@@ -39,11 +39,19 @@ impl<Q: Coordinates> Sample<'_, Q> {
         }
         State { u: u_dot, u_dot: u_ddot, theta: theta_dot, theta_dot: theta_ddot }
     }
+
+    /// The rates at which the contact points settle for good, m/s.
+    pub fn settling(&self) -> Settlements {
+        let Motion { phase, state, settled, .. } = &self.motion;
+        let Some(ground) = Q::foundation(self.level.structure()) else { return NONE_SETTLED };
+        let motion = [state.u, state.u_dot].map(|of| of.footing(ground));
+        ground.settling(phase.contact(), motion, settled.as_ref())
+    }
 }
 
 /// Result of the check of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Checked<Q = f64> {
+pub struct Checked<Q: Coordinates = f64> {
     /// The motion at its end.
     pub motion: Motion<Q>,
     /// Whether that is the engine's own and not where the integrator ended.
@@ -54,7 +62,8 @@ pub struct Checked<Q = f64> {
 
 /// The last known instant of a motion that another integrator continues: the start, the end of a complete step, an event.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint<Q = f64> {
+#[serde(bound = "")]
+pub struct Checkpoint<Q: Coordinates = f64> {
     /// The motion.
     pub motion: Motion<Q>,
     /// Time since the start, on ground that follows a record.
@@ -94,8 +103,9 @@ impl<Q: Coordinates> Checkpoint<Q> {
             let taken = own.state.u.footing(ground).taken; // the host does not integrate what the ground takes
             state.u.set_footing(ground, Footing { taken, ..state.u.footing(ground) });
         }
+        let settled = if is_corrected { own.settled } else { end.settled };
         Ok(Checked {
-            motion: Motion { time, phase, state, ..own },
+            motion: Motion { time, phase, state, settled, ..own },
             is_corrected,
             was_hidden: has_changed && !is_beyond,
         })
@@ -148,7 +158,7 @@ impl<Q: Coordinates> Engine<Q> {
     /// Takes `state` from another integrator; what does not move in the present phase stays at rest. A base that sticks slides if it has a
     /// velocity, beyond what rounding leaves.
     pub fn set_state(&mut self, state: State<Q>) {
-        let Sample { motion, level, .. } = self.sample(Load::NONE);
+        let Sample { mut motion, level, .. } = self.sample(Load::NONE);
         let (mut phase, structure) = (motion.phase, level.structure());
         let x_dot = Q::foundation(structure).and_then(|ground| state.u_dot.slide(ground)).unwrap_or(0.0);
         let least = BAND * (structure.base().g * structure.base().B).sqrt();
@@ -156,6 +166,9 @@ impl<Q: Coordinates> Engine<Q> {
             (&mut phase, x_dot.abs() > least)
         {
             contact.friction = Friction::Slides(Side::of(x_dot));
+        }
+        if let Some(ground) = Q::foundation(structure) {
+            ground.hold(phase.contact(), state.u.footing(ground), motion.settled.as_mut());
         }
         let state = level.admissible(phase, state);
         self.set_motion(Motion { state, phase, ..motion });
@@ -179,9 +192,9 @@ impl<Q: Coordinates> Engine<Q> {
     /// its root a guard goes where its rate points, and has to open first once its transition has been applied.
     fn due_at_once(&self, load: Load<Q>) -> Option<Closed> {
         let (now, watched) = (self.sample(load), self.watched()?);
-        let Sample { motion: Motion { phase, state, dissipators, .. }, level, .. } = &now;
+        let Sample { motion: motion @ Motion { phase, state, .. }, level, .. } = &now;
         if let Phase::OnGround(contact) = *phase {
-            let start = level.subject().start(*state, dissipators, load.into(), level.longest_step());
+            let start = level.subject().start(*state, motion.kept(), load.into(), level.longest_step());
             let mut arc = Arc::default();
             level.series(*phase, &start, &mut arc);
             let side = now.motion.side();

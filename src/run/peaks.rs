@@ -236,7 +236,10 @@ impl Peaks {
             // what has a bound of its own between the ends does not read θ̈
             let shown = || match is_torn {
                 true => piece.shown(0.0, &before.state),
-                false => Instant::of(structure, before.phase, &before.state, load.value),
+                false => {
+                    let x = Instant::of(structure, before.phase, &before.state, load.value);
+                    Instant { settled: Q::settlements(&before.settled), ..x }
+                }
             };
             of.see(first.get_or_insert_with(shown), times[0])
         };

@@ -51,8 +51,8 @@ impl Residual {
     /// none NaN.
     pub fn of<Q: Coordinates>(&self, structure: &Structure, motion: &Motion<Q>) -> f64 {
         let Some(ground) = Q::foundation(structure) else { return f64::NAN };
-        let Motion { phase, state, dissipators: Dissipators { slip, friction, settling, .. }, .. } = motion;
-        let s = |i: usize| state.u.settlement(ground, i);
+        let Motion { phase, state, dissipators: Dissipators { slip, friction, settling, .. }, settled, .. } = motion;
+        let s = |i: usize| settled.as_ref()[i];
         let rest = || ground.at_rest(structure, libm::sin(state.theta), &s).unwrap_or([f64::NAN; 2]);
         match self.name {
             "x_end" => state.u.slide(ground).unwrap_or(f64::NAN),

@@ -10,7 +10,7 @@ use std::iter::Peekable;
 
 /// Shows a motion at given instants, none of which is before the start. A piece lasts until the next one begins: its own end, start
 /// plus duration, misses this instant by the rounding of the clock.
-pub(crate) struct Sampler<Times: Iterator<Item = f64>, Show, Q> {
+pub(crate) struct Sampler<Times: Iterator<Item = f64>, Show, Q: Coordinates> {
     times: Peekable<Times>,
     show: Show,
     /// Motion and load at the end of the last piece.

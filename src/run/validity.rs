@@ -385,7 +385,8 @@ fn extents_of_vibration<Q: Coordinates>(part: PiecePart<Q>) -> Option<Reactions<
         let of = |u: &Q, u_dot: &Q| reach.elastic(1.0, u, u_dot) + weight * moved(u);
         off_chord(of(&u, &u_dot), [per_bend, of(&u_ddot, &jerk)])
     };
-    let [first, last] = part.samples().map(|sample| sample.edges());
+    let PiecePart { piece, start: (from, ref start) } = part;
+    let [first, last] = [piece.edges(from, start), piece.edges(piece.duration, &piece.end)];
     Some(Reactions {
         R_h: Extent::between(first.R_h, last.R_h, off(Output::V_t, 0.0)),
         R_v: Extent::between(first.R_v, last.R_v, 0.0),
@@ -403,7 +404,8 @@ struct Polynomial<'a, Q: Coordinates> {
 impl<Q: Coordinates> Polynomial<'_, Q> {
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
-        self.of.sample(sigma).edges()
+        let Expansion { piece, from, arc } = self.of;
+        piece.edges(from + sigma * arc.span, &arc.at(sigma))
     }
 
     /// Whether the series of R_h and R_v end in the reactions `last` of the state, but for rounding of the weight, below which

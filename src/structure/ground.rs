@@ -127,7 +127,13 @@ pub const NAMES: [&str; 13] =
     ["f_v", "k_v", "zeta_v", "c_v", "n_points", "kr_ratio", "k_r", "xi", "k", "c", "mu_c", "fs", "q_u"];
 
 /// The most contact points.
-pub const MOST_POINTS: usize = 21;
+pub const MOST_POINTS: usize = NONE_SETTLED.len();
+
+/// Settlements of the contact points for good (m), or their rates; 0 of points that are none.
+pub type Settlements = [f64; 21];
+
+/// No point has settled.
+pub(crate) const NONE_SETTLED: Settlements = [0.0; 21];
 
 /// Damping ratio of the bounce unless it is given.
 const ZETA: f64 = 0.2;
@@ -362,17 +368,12 @@ impl Foundation {
 
     /// Number of the coordinates beside those of the modes.
     pub(crate) fn coordinates(&self) -> usize {
-        self.settled() + if self.yields { self.points.len() } else { 0 } - self.place
+        FOOTING + usize::from(self.mu_c.is_some())
     }
 
     /// The place of x, the way of the middle to the right, among the lateral coordinates of a base that may slide.
     pub fn slide(&self) -> Option<usize> {
         self.mu_c.map(|_| self.place + FOOTING)
-    }
-
-    /// The place of the settlement of the first point.
-    pub fn settled(&self) -> usize {
-        self.place + FOOTING + usize::from(self.mu_c.is_some())
     }
 
     /// Whether the base may slide, or points may yield.
@@ -382,10 +383,9 @@ impl Foundation {
 
     /// Σ k ξⁿ s of settlements s for good, over the same sum without s but of ξ²ⁿ: the mean settlement for n = 0, m, and the tilt for n = 1,
     /// rad.
-    pub(crate) fn residual<N: Number>(&self, s: impl Fn(usize) -> N, power: i32) -> N {
+    pub(crate) fn residual(&self, s: impl Fn(usize) -> f64, power: i32) -> f64 {
         let part = |(i, point): (usize, &ContactPoint)| s(i) * (point.k * point.xi.powi(power));
-        let sum = self.points.iter().enumerate().map(part).reduce(|sum, of| sum + of);
-        sum.unwrap_or(N::constant(0.0)) * (1.0 / self.sum(2 * power))
+        self.points.iter().enumerate().map(part).sum::<f64>() * (1.0 / self.sum(2 * power))
     }
 
     /// Both ends of the strip of a base of half-width `B` (m) that point `i` stands for, m: halfway to the next points, or an edge.

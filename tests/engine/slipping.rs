@@ -94,7 +94,7 @@ fn energy_is_kept() {
         let ground = Ground {
             f_v: Some(one_of(&[5.0, 12.0, 30.0])),
             zeta_v: Some(one_of(&[0.0, 0.0, 0.02, 0.2])),
-            n_points: Some(one_of(&[2.0, 3.0, 5.0, 11.0])),
+            n_points: Some(one_of(&[2.0, 3.0, 11.0, 21.0])),
             mu_c: Some(one_of(&[-1.0, 0.0, 0.1, 0.3, 0.8])).filter(|mu_c| *mu_c >= 0.0),
             fs: Some(one_of(&[0.0, 1.0 + 1e-9, 1.5, 3.0])).filter(|fs| *fs > 0.0),
             ..Ground::default()

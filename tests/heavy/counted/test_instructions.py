@@ -22,7 +22,7 @@ COMMANDS = {"run_of_a_pier": ["simulate", "--preset", "mcmanus", "--record", "re
 PLAN = f"records = ['record.csv']\nscale = {[i / 8 for i in range(1, 17)]}\n[[structures]]\nname = 'counted'\n"
 
 
-def test_ground_that_holds_takes_12_percent_more_instructions_at_most_if_it_might_slide_or_yield(exporter, pacoima_record, tmp_path):
+def test_ground_that_holds_takes_5_percent_more_instructions_at_most_if_it_might_slide_or_yield(exporter, pacoima_record, tmp_path):
     if shutil.which("valgrind") is None:
         pytest.skip("valgrind is missing and cannot be installed")
     counts = []
@@ -31,7 +31,7 @@ def test_ground_that_holds_takes_12_percent_more_instructions_at_most_if_it_migh
         valgrind = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", f"--log-file={tmp_path / 'log'}"]
         output(*valgrind, exporter, "--quiet", "simulate", "--parameters", tmp_path / "frame.toml", "--record", pacoima_record)
         counts.append(int(re.search(r"Collected : (\d+)", (tmp_path / "log").read_text())[1]))
-    assert counts[1] <= 1.12 * counts[0], f"{counts[1] / counts[0] - 1:+.1%}"
+    assert counts[1] <= 1.05 * counts[0], f"{counts[1] / counts[0] - 1:+.1%}"
 
 
 def test_nothing_takes_5_percent_more_instructions(exporter, pacoima_record, run, linux_host, tmp_path):
