@@ -14,7 +14,7 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::Limits;
 use rocking::{Detail, Output, Phase};
 use rocking_report::quantities::PrintedNumber;
-use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup, SampledMotion, Sure, usual_periods};
+use rocking_report::run::{Event, NamedPeak, OF_FLOOR, RunReport, RunSetup, SampledMotion, SureDigits, usual_periods};
 use rocking_report::validity::{Beyond, rows};
 use rocking_sweep::plan::Conditions;
 
@@ -83,7 +83,7 @@ impl PyRun {
     /// How sure the results are, a Condition; None without condition=True. The sure digits of each peak are its `digits`.
     #[getter]
     fn condition<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let of = |Sure { digits, overturning_digits, overturning_change }| {
+        let of = |SureDigits { digits, overturning_digits, overturning_change }| {
             result(py, "Condition", (digits, overturning_digits, overturning_change))
         };
         self.found.sure.map(of).transpose()

@@ -82,7 +82,7 @@ pub struct RunReport {
     pub(crate) for_peaks: Option<u64>,
     /// How sure the results are, if the condition is found.
     #[serde(flatten)]
-    pub sure: Option<Sure>,
+    pub sure: Option<SureDigits>,
     /// The findings about the model, if limits were given.
     #[serde(skip)]
     pub findings: Option<Findings>,
@@ -97,17 +97,17 @@ pub struct NamedPeak {
     pub magnitude: f64,
     pub unit: &'static str,
     pub time: f64,
-    /// Sure digits, if the condition is found.
+    /// SureDigits digits, if the condition is found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub digits: Option<u8>,
 }
 
 /// How sure the results of a run are.
 #[derive(Clone, Copy, Serialize)]
-pub struct Sure {
-    /// Sure digits of the peak of θ or, if the structure overturns, of the time until then, as in the rows of a sweep.
+pub struct SureDigits {
+    /// SureDigits digits of the peak of θ or, if the structure overturns, of the time until then, as in the rows of a sweep.
     pub digits: u8,
-    /// Sure digits of whether the structure overturns.
+    /// SureDigits digits of whether the structure overturns.
     pub overturning_digits: u8,
     /// The least relative change of the input, of those tried, that decides otherwise.
     pub overturning_change: Option<f64>,
@@ -195,7 +195,8 @@ impl RunSetup {
             let end = with_run!(conditions, structure, &ground, run => run.follow(watch).map(|end| end.ending));
             !matches!(end, Ok(Ok(ending)) if ending.overturned() == report.overturned)
         });
-        report.sure = Some(Sure { digits, overturning_digits: digits_of_outcome(change), overturning_change: change });
+        report.sure =
+            Some(SureDigits { digits, overturning_digits: digits_of_outcome(change), overturning_change: change });
     }
 
     /// The results of the same structure on a fixed base, from rest under the same ground motion until `end` (s).

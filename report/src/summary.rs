@@ -1,6 +1,6 @@
 //! The summary of a run.
 use crate::quantities::{NamedValue, of_motion};
-use crate::run::{Dissipated, NamedPeak, OF_FLOOR, RunReport, RunSetup, Sure};
+use crate::run::{Dissipated, NamedPeak, OF_FLOOR, RunReport, RunSetup, SureDigits};
 use crate::validity;
 use rocking::digits::significant;
 use rocking::run::peaks::Peak;
@@ -111,7 +111,7 @@ impl RunSetup {
 const LEANING: f64 = 0.01;
 
 /// The sure digits of the run, of its least sure peak and of the outcome, in a sentence.
-fn sentence(found: &RunReport, &Sure { digits, overturning_digits, overturning_change }: &Sure) -> String {
+fn sentence(found: &RunReport, &SureDigits { digits, overturning_digits, overturning_change }: &SureDigits) -> String {
     let of_run = if found.ending == Ending::Overturned { "the instant of overturning" } else { "theta" };
     let least = found.peaks.iter().filter_map(|peak| peak.digits).min().unwrap_or(0);
     let decides = match overturning_change {
