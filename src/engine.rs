@@ -347,7 +347,7 @@ impl<Q: Coordinates> Engine<Q> {
         let Motion { phase, state, .. } = &self.motion;
         let kept = self.motion.kept();
         let x = shown::<Q>(&*self.level, phase.in_motion(self.structure()), (state, load), kept);
-        move |output| output.added_up(self.structure(), kept).unwrap_or_else(|| output.of(&x))
+        move |output| output.in_motion(&x, kept)
     }
 
     /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken

@@ -66,10 +66,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
                 Output::P_t => ties().P_t,
                 Output::F_d1 => ties().F_d1,
                 Output::F_d2 => ties().F_d2,
-                _ => {
-                    let added_up = output.added_up(self.level.structure(), self.motion.kept());
-                    added_up.unwrap_or_else(|| output.of(&shown))
-                }
+                _ => output.in_motion(&shown, self.motion.kept()),
             }
         }
     }

@@ -460,6 +460,13 @@ impl Output {
         }
     }
 
+    /// The output in the motion `x`, beside which `kept` adds up; of one mass, whose engine is compiled without ground, nothing does.
+    #[inline]
+    pub(crate) fn in_motion<Q: Coordinates>(self, x: &Instant<f64, Q>, kept: Kept) -> f64 {
+        let added_up = Q::foundation(x.structure).and_then(|_| self.added_up(x.structure, kept));
+        added_up.unwrap_or_else(|| self.of(x))
+    }
+
     /// The output of `structure` if it adds up over a motion beside the state.
     pub(crate) fn added_up(self, structure: &Structure, (of, s): Kept) -> Option<f64> {
         match self {
