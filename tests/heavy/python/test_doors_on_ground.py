@@ -56,4 +56,6 @@ def test_every_door_has_the_same_numbers(exporter, tmp_path, number):
     assert found.keys() - TIES == expected.keys() - TIES
     for name, of in expected.items():
         is_exact = max(of[1], found[name][1]) <= scene.record_end
-        assert found[name] == pytest.approx(of, rel=1e-13 if is_exact else 1e-9, abs=0), name
+        has_instant = not re.match(r"N|pressure", name)  # a point may reach its capacity many times
+        same = lambda value: pytest.approx(value, rel=1e-13 if is_exact else 1e-9, abs=0)
+        assert found[name][0] == same(of[0]) and (found[name][1] == same(of[1]) or not has_instant), (name, found[name], of)
