@@ -217,8 +217,8 @@ impl Structure {
         Structure(Arc::new(whole), self.1.clone())
     }
 
-    /// This structure on `ground` that gives, with at most 21 modes, or 20 if the base may slide. The structure has no numbers of one mass any more: it is moved as
-    /// structures of many masses are. Without `ground`, this structure.
+    /// This structure on `ground` that gives, with at most 21 modes, or 20 if the base may slide. The structure has no numbers of one mass
+    /// any more: it is moved as structures of many masses are. Without `ground`, this structure.
     pub fn on<'g>(&self, ground: impl Into<Option<&'g Ground>>) -> Result<Structure, Refused> {
         let Some(ground) = ground.into() else { return Ok(self.clone()) };
         let founded = |structure: &Structure| {

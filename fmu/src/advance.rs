@@ -16,7 +16,7 @@ impl<Q: Runs> Scene<Q> {
     /// Takes a step under `inputs` and goes back, so that the first step of the host finds code and memory at hand.
     pub fn rehearse(&mut self, inputs: LinearLoad<Q>) {
         let start = *self.engine.motion();
-        let step = self.engine.structure().vibration().rocking[1].recip();
+        let step = self.engine.structure().vibration().rocking[1].recip().min(1e-3);
         _ = self.engine.advance(step, inputs, &mut ()); // if it fails, the host's own step says why
         self.engine.set_motion(start);
     }

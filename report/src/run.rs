@@ -193,7 +193,7 @@ impl RunSetup {
         let change = TRIED.into_iter().flat_map(|change| [change, -change]).find(|change| {
             let RunSetup { structure, ground, conditions } = changed(*change);
             let end = with_run!(conditions, structure, &ground, run => run.follow(watch).map(|end| end.ending));
-            !matches!(end, Ok(Ok(ending)) if ending.overturned() == report.overturned)
+            matches!(end, Ok(Ok(ending)) if ending.overturned() != report.overturned)
         });
         report.sure =
             Some(SureDigits { digits, overturning_digits: digits_of_outcome(change), overturning_change: change });

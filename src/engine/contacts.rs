@@ -1,7 +1,7 @@
 //! Guards of ground that gives: contact points that are touched, released, and yield, a tendon that goes slack, dissipators that yield.
 //!
 //! A pressed point is released when f returns to 0. A free point is touched when e < 0 and f > 0 hold together. Both depend on the state
-//! alone, so that nothing is remembered between steps. A gap that starts within rounding of its root is divided by time until its first
+//! and the settlements alone, so that nothing else is remembered between steps. A gap that starts within rounding of its root is divided by time until its first
 //! coefficient is a number. The gap then closes at once, or it opens and must return. Points that act at one instant, as in
 //! vertical motion, follow one another in steps without duration.
 

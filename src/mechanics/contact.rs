@@ -49,12 +49,14 @@ impl ContactPoint {
     }
 }
 
-/// Rotations, each half of the one before, within which a structure may stay.
-const TURNS: u32 = 8;
+/// Part by which a bend is passed.
+const BEYOND_BEND: f64 = 1e-9;
 
-/// Part of its capacity that separates a point at rest from it, at least, and by which a point at rest may be beyond it. The second leaves
-/// an error of the energy at rest that is small beside the energy of the first.
+/// Part of its capacity that separates a point at rest from it, at least.
 const NEAR_CAPACITY: f64 = 1e-3;
+
+/// Part of its capacity by which a point at rest may be beyond it: the energy at rest then has an error that is small beside the energy that
+/// [`NEAR_CAPACITY`] leaves.
 const BEYOND_CAPACITY: f64 = NEAR_CAPACITY * NEAR_CAPACITY / 16.0;
 
 /// Part of its capacity by which a point may miss it and yield all the same.
@@ -78,27 +80,59 @@ impl Foundation {
 
     /// y (m) and sin θ of `structure` at rest on points that have settled for good by `s` (m): Σ N = m_t g + P and Σ ξ N = g S_1 tan θ +
     /// g² sin θ Σ Γ²/(μ ω²), with N = min(q, k max(0, −e)). A rounded bed has several rests: this one is the way that the structure goes
-    /// without inertia from the rotation of the sine `now`, or from the tilt of the points where it falls over from there. None if it falls
-    /// over from both.
+    /// without inertia from the rotation of the sine `now`. None if it falls over from there.
     pub(crate) fn at_rest(&self, structure: &Structure, now: f64, s: &dyn Fn(usize) -> f64) -> Option<[f64; 2]> {
-        if (0..self.points.len()).all(|i| s(i) == 0.0) {
+        if (0..self.points.len()).all(|i| s(i) == 0.0) && now.abs() <= self.y_s / self.points[0].xi {
             return Some([self.y_s, 0.0]);
         }
-        let (weighs, leans) = overturns(structure.base(), structure.body(), structure.modes());
-        let turned_back = |sin: f64| {
-            let sin = sin.clamp(-1.0, 1.0);
-            let y = self.level(sin, structure.base(), s);
-            let moment = |(i, of): (usize, &ContactPoint)| of.xi * of.force(of.xi * sin - y - s(i));
-            self.points.iter().enumerate().map(moment).sum::<f64>() - (weighs / (1.0 - sin * sin).sqrt() + leans) * sin
-        };
-        let rest_from = |start: f64| {
-            let way = if turned_back(start) < 0.0 { 1.0 } else { -1.0 };
-            let leans_on = |by: f64| way * turned_back(start + way * by) < 0.0;
-            let far = (-30..0).map(|i| libm::exp2(f64::from(i))).find(|by| !leans_on(*by))?;
-            Some(start + way * last_where(0.0, far, leans_on))
-        };
-        let sin = rest_from(now).or_else(|| rest_from(libm::sin(self.residual(s, 1))))?;
+        let way = if self.turned_back(structure, now, s) < 0.0 { 1.0 } else { -1.0 };
+        let sin = self.first_turn(structure, now, way, s, &|back| way * back < 0.0)?;
         Some([self.level(sin, structure.base(), s), sin])
+    }
+
+    /// The moment that turns `structure` back to a rotation of 0, N·m, at this sine of its rotation.
+    fn turned_back(&self, structure: &Structure, sin: f64, s: &dyn Fn(usize) -> f64) -> f64 {
+        let (weighs, leans) = overturns(structure.base(), structure.body(), structure.modes());
+        let y = self.level(sin, structure.base(), s);
+        let moment = |(i, of): (usize, &ContactPoint)| of.xi * of.force(of.xi * sin - y - s(i));
+        self.points.iter().enumerate().map(moment).sum::<f64>() - (weighs / (1.0 - sin * sin).sqrt() + leans) * sin
+    }
+
+    /// The first sine `from` this one to the side `way` at which the moment that turns the structure back is not `so` any more. It is sought
+    /// between the bends of this moment over the sine.
+    fn first_turn(
+        &self,
+        structure: &Structure,
+        mut from: f64,
+        way: f64,
+        s: &dyn Fn(usize) -> f64,
+        so: &dyn Fn(f64) -> bool,
+    ) -> Option<f64> {
+        let is_so = |sin: f64| so(self.turned_back(structure, sin, s));
+        while from.abs() < 1.0 {
+            let to = self.next_bend(structure.base(), from, way, s);
+            if !is_so(to) {
+                return Some(way * last_where(way * from, way * to, |sin| is_so(way * sin)));
+            }
+            from = to;
+        }
+        None
+    }
+
+    /// The sine just beyond the next one at which the ground touches or releases a point, a point comes to its capacity or leaves it, or the
+    /// tendon goes slack or taut, while the structure turns from `sin` to the side `way` without inertia; the one of a quarter turn if none is.
+    fn next_bend(&self, base: &Base, sin: f64, way: f64, s: &dyn Fn(usize) -> f64) -> f64 {
+        let Ties { P_0, k_t, .. } = base.ties;
+        let (y, taut) = (self.level(sin, base, s), self.y_s - P_0 / k_t);
+        let depths = || self.points.iter().enumerate().map(move |(i, of)| (of, of.xi * sin - y - s(i)));
+        let carry = depths().filter(|(of, depth)| *depth > 0.0 && of.k * depth < of.q);
+        let held = if y > taut { k_t } else { 0.0 };
+        let [K_0, K_1] = carry.fold([held, 0.0], |[a, b], (of, _)| [a + of.k, b + of.k * of.xi]);
+        let falls = K_1 / K_0;
+        let of_points = depths().flat_map(|(of, depth)| [0.0, of.q / of.k].map(|at| (at - depth) / (of.xi - falls)));
+        let next = of_points.chain([(taut - y) / falls]).map(|by| way * by).filter(|by| *by > 0.0);
+        let next = next.fold(f64::INFINITY, f64::min);
+        (sin + way * (next * (1.0 + BEYOND_BEND) + BEYOND_BEND * BEYOND_BEND)).clamp(-1.0, 1.0)
     }
 
     /// The energy (J) above this rest, of y (m) and sin θ on points that have settled by `s` (m), below which no point certainly yields:
@@ -126,19 +160,12 @@ impl Foundation {
             let of_points = self.points.iter().enumerate().map(spring).sum::<f64>();
             of_points + tendon + m_t * g * y + weighs * (1.0 - sin * sin).sqrt() - 0.5 * leans * sin * sin
         };
-        let rest = raised(sin);
-        let (mut least, mut room) = (0.0_f64, [0.0; 2]);
-        // of a smaller d gravity takes less, and a structure that falls over or finds another rest beyond it may come to rest within it
-        for i in (0..TURNS).rev() {
-            let turned = turned * libm::exp2(-f64::from(i));
-            let wider = [1.0, -1.0].map(|way| raised((sin + way * turned).clamp(-1.0, 1.0)) - rest);
-            if wider[0] < room[0] || wider[1] < room[1] {
-                break;
-            }
-            room = wider;
-            least = least.max((0.5 * pressed).min(room[0]).min(room[1]));
-        }
-        least
+        // beyond a barrier the structure falls over, or finds another rest
+        let room = |way: f64| {
+            let barrier = self.first_turn(structure, sin, way, s, &|back| way * back > 0.0).unwrap_or(way);
+            raised(sin + way * turned.min(way * (barrier - sin))) - raised(sin)
+        };
+        (0.5 * pressed).min(room(1.0)).min(room(-1.0))
     }
 
     /// How far points have settled under a structure that was moved slowly to `state`.

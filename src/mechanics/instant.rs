@@ -11,7 +11,7 @@ use crate::{Base, Foundation, Mode, Phase, PressedPoints, State, Structure};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
     pub structure: &'a Structure,
-    /// s: +1 about the right pivot, −1 about the left one; 0 on ground that gives.
+    /// s: +1 about the right pivot, −1 about the left one; 0 on ground that gives. It shares a word with the contact, since instants are copied.
     pub s: f32,
     /// The pressed contact points of the ground.
     pub contact: PressedPoints,

@@ -17,7 +17,8 @@ use crate::{Base, Foundation, Gauge, Output, Phase, PressedPoints, Ramp, Side, S
 /// Bounds of the magnitudes of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Magnitudes<'a, Q> {
-    /// The motion over a polynomial, the ground acceleration and how far points have settled, if an output depends on the ground acceleration, or on ground that gives.
+    /// The motion over a polynomial, the ground acceleration and how far points have settled, if an output depends on the ground
+    /// acceleration, or on ground that gives.
     pub arc: Option<(&'a Arc<Q>, Ramp, &'a Settlements)>,
     /// Part of the viscous damping in full contact.
     pub damping: f64,

@@ -167,10 +167,10 @@ impl<Q: Coordinates> Engine<Q> {
         {
             contact.friction = Friction::Slides(Side::of(x_dot));
         }
+        let state = level.admissible(phase, state);
         if let Some(ground) = Q::foundation(structure) {
             ground.hold(phase.contact(), state.u.footing(ground), motion.settled.as_mut());
         }
-        let state = level.admissible(phase, state);
         self.set_motion(Motion { state, phase, ..motion });
     }
 

@@ -1,10 +1,9 @@
 //! What is left at the end of a run on ground that slips and yields: the way of the base, and the rest on the settled ground.
 
-use crate::Structure;
 use crate::engine::motion::Motion;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint::Dissipators;
 use crate::structure::ground::Foundation;
+use crate::{Output, Structure};
 
 /// A number of the end of a run.
 #[derive(Debug)]
@@ -47,28 +46,27 @@ impl Residual {
         RESIDUALS.iter().filter(move |of| foundation.as_ref().is_some_and(of.is_of))
     }
 
-    /// Its value after `motion` of `structure`. The rest of a structure that has overturned is infinite, and of one that finds
-    /// none NaN.
+    /// Its value after `motion` of `structure`. The rest of a structure that has overturned, or falls over without inertia from where it is,
+    /// is infinite.
     pub fn of<Q: Coordinates>(&self, structure: &Structure, motion: &Motion<Q>) -> f64 {
         let Some(ground) = Q::foundation(structure) else { return f64::NAN };
-        let Motion { phase, state, dissipators: Dissipators { slip, friction, settling, .. }, settled, .. } = motion;
-        let s = |i: usize| settled.as_ref()[i];
-        let rest = || ground.at_rest(structure, libm::sin(state.theta), &s).unwrap_or([f64::NAN; 2]);
+        let added_up = |of: Output| of.added_up(structure, motion.kept()).unwrap_or(f64::NAN);
+        let rest = || {
+            let now = Some(libm::sin(motion.state.theta)).filter(|_| !motion.phase.properties().is_over);
+            now.and_then(|now| ground.at_rest(structure, now, &|i| motion.settled.as_ref()[i]))
+        };
         match self.name {
-            "x_end" => state.u.slide(ground).unwrap_or(f64::NAN),
-            "slip_path" => *slip,
-            "E_friction" => *friction,
-            "tilt" => ground.residual(s, 1),
-            "settled" => ground.residual(s, 0),
-            "E_plastic" => *settling,
-            "theta_res" if phase.properties().is_over => f64::INFINITY,
-            "theta_res" => libm::asin(rest()[1]),
-            _ if phase.properties().is_over => f64::INFINITY,
-            _ => {
-                let [y, sin] = rest();
+            "x_end" => motion.state.u.slide(ground).unwrap_or(f64::NAN),
+            "slip_path" => added_up(Output::slip_path),
+            "E_friction" => added_up(Output::E_friction),
+            "tilt" => added_up(Output::tilt),
+            "settled" => added_up(Output::settled),
+            "E_plastic" => added_up(Output::E_plastic),
+            "theta_res" => rest().map_or(f64::INFINITY, |[_, sin]| libm::asin(sin)),
+            _ => rest().map_or(f64::INFINITY, |[y, sin]| {
                 let outer = [0, ground.points.len() - 1].map(|i| y - ground.points[i].xi * sin);
                 -outer[0].min(outer[1])
-            }
+            }),
         }
     }
 }

@@ -129,7 +129,8 @@ pub const NAMES: [&str; 13] =
 /// The most contact points.
 pub const MOST_POINTS: usize = NONE_SETTLED.len();
 
-/// Settlements of the contact points for good (m), or their rates; 0 of points that are none.
+/// Settlements of the contact points for good (m), or their rates; 0 of points that are none. A constant in the place of the number breaks
+/// rustc 1.95.
 pub type Settlements = [f64; 21];
 
 /// No point has settled.
@@ -337,14 +338,24 @@ impl Foundation {
         if !self.yields {
             return Ok(());
         }
-        let (count, given, zeta) = (self.points.len(), self.ground.q_u.len(), self.zeta_v(base));
+        let (count, given, omega_v) = (self.points.len(), self.ground.q_u.len(), self.omega_v(base));
         ensure(given == 0 || given == count, || {
             format!("q_u has {given} numbers, and there are {count} points: give one for each, from left to right")
         })?;
-        ensure(zeta == 0.0 || zeta >= LEAST_ZETA, || {
-            format!("zeta_v = {zeta} is too small for points that yield: give 0, or {LEAST_ZETA} or more")
-        })?;
         for i in 0..count {
+            let zeta = 0.5 * self.points[i].c / self.points[i].k * omega_v;
+            ensure(zeta == 0.0 || zeta >= LEAST_ZETA * (1.0 - SAME), || match self.ground.c.len() {
+                0 => format!(
+                    "zeta_v = {} is too small for points that yield: give 0, or {LEAST_ZETA} or more",
+                    self.zeta_v(base)
+                ),
+                _ => format!(
+                    "c[{}] = {} N.s/m is too small for a point that yields: give 0, or {} N.s/m or more",
+                    i + 1,
+                    self.points[i].c,
+                    2.0 * LEAST_ZETA * self.points[i].k / omega_v
+                ),
+            })?;
             let at_rest = -self.points[i].k * self.y_s;
             let q = self.ground.fs.map_or_else(|| self.ground.q_u[i], |fs| fs * at_rest);
             let mirrored = self.ground.q_u.get(count - 1 - i).map_or(q, |q| *q);

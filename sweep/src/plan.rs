@@ -347,7 +347,9 @@ impl Plan {
         check_names("ground motions", motions.iter().map(|of| &of.name))?;
         for base in populations.iter_mut().flat_map(|of| &mut of.bases) {
             conditions.check(base)?;
-            conditions.changed(PERTURBATION).check(base)?;
+            if conditions.finds_condition {
+                conditions.changed(PERTURBATION).check(base)?;
+            }
             *base = base.at(conditions.detail);
         }
         let (measures, layouts, spectral, doubts, widest) = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), 0.0);
