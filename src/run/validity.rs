@@ -549,7 +549,13 @@ fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
     }
     if let (Some(mu_c), true) = (foundation.mu_c, foundation.mu_c.is_some_and(|mu_c| mu_c < base.tan_alpha_cg)) {
         let [mu_c, slender] = [mu_c, base.tan_alpha_cg].map(short);
-        warnings.push(format!("mu_c = {mu_c} is below tan(alpha_cg) = {slender}: the base slides rather than rocks"));
+        warnings.push(format!("mu_c = {mu_c} is below tan(alpha_cg) = {slender}: the base may slide rather than rock"));
+    }
+    if let (Some(fs), true) = (foundation.ground.fs, base.ties.P_0 > 0.0) {
+        warnings.push(format!(
+            "fs = {}: the capacities grow with P_0, which counts as load at rest; give q_u for ground whose strength is known",
+            short(fs)
+        ));
     }
     let reserve = foundation.reserve();
     if foundation.yields && foundation.points.len() == 2 && reserve >= 2.0 {

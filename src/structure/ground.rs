@@ -216,6 +216,11 @@ impl Ground {
             ("kr_ratio", "k_r", kr_ratio.zip(k_r)),
             ("f_v", "xi", f_v.zip(list)),
             ("k_v", "xi", k_v.zip(list)),
+            ("zeta_v", "xi", zeta_v.zip(list)),
+            ("c_v", "xi", c_v.zip(list)),
+            ("n_points", "xi", n_points.zip(list)),
+            ("kr_ratio", "xi", kr_ratio.zip(list)),
+            ("k_r", "xi", k_r.zip(list)),
             ("fs", "q_u", self.fs.zip(self.q_u.first().copied())),
         ] {
             ensure(both.is_none(), || format!("{one} and {other} are both given: leave one of them out"))?;
