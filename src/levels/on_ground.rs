@@ -45,8 +45,8 @@ pub(crate) struct OnGround<V: Abreast> {
     /// The lowest frequency, rad/s, and the radius of gyration √(J_P/m_t), m.
     lowest: f64,
     radius: f64,
-    /// Energy above rest below which no point leaves the ground, J.
-    least_lift: f64,
+    /// Energy above rest on ground that has not settled below which no point leaves it, or yields if it may, J.
+    least_change: f64,
     /// Bounds over √(2E) at an energy E (J) above rest: of the horizontal force that the modes need, and of how the normal force changes.
     swings: [f64; 2],
     scratch: RefCell<Box<GroundScratch<V>>>,
@@ -175,7 +175,10 @@ impl<V: Abreast> OnGround<V> {
             longest_slide: LONGEST_SPAN / foundation.fastest_sliding(fastest, base, modes),
             lowest: frequencies[0],
             radius: (base.J_P / base.m_t).sqrt(),
-            least_lift: foundation.least_lift(base, body, modes),
+            least_change: match foundation.yields {
+                true => foundation.least_yield(structure, [foundation.y_s, 0.0], &|_| 0.0),
+                false => foundation.least_lift(base, body, modes),
+            },
             swings: swings(structure, fastest),
             scratch: RefCell::new(Box::new(GroundScratch {
                 fours: V::groups(modes),
@@ -386,7 +389,7 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
         let structure = &self.subject.structure;
         let (ground, base) = (structure.ground(), structure.base());
         let of = |state: &State<Modes>| energy(structure, ground.contact(state, settled, base), state, kept);
-        let (resting, room) = if ground.yields {
+        let (resting, room) = if settled.iter().any(|s| *s != 0.0) {
             let now = libm::sin(state.theta);
             let Some(rest @ [y, sin]) = ground.at_rest(structure, now, &|i| settled[i]) else { return false };
             let mut u = Modes::each(structure, |_, mode| base.g * mode.gamma * sin / mode.stiffness);
@@ -396,7 +399,7 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
             (resting, ground.least_yield(structure, rest, &|i| settled[i]))
         } else {
             let still = Modes::parts(structure, 0.0);
-            (ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base), self.least_lift)
+            (ground.begin(&State { u: still, u_dot: still, theta: 0.0, theta_dot: 0.0 }, base), self.least_change)
         };
         let room = match (ground.mu_c, state.u_dot.slide(ground)) {
             (Some(mu_c), Some(0.0)) => {

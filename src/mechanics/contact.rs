@@ -4,7 +4,6 @@ use crate::mechanics::energy::mechanical;
 use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::restraint::{self, Dissipators, Kept, Tie, places};
-use crate::series::bisection::last_where;
 use crate::series::taylor::reciprocal;
 use crate::structure::ground::{ContactPoint, Footing, Settlements, overturns};
 use crate::structure::mode::Modes;
@@ -86,7 +85,7 @@ impl Foundation {
             return Some([self.y_s, 0.0]);
         }
         let way = if self.turned_back(structure, now, s) < 0.0 { 1.0 } else { -1.0 };
-        let sin = self.first_turn(structure, now, way, s, &|back| way * back < 0.0)?;
+        let sin = self.first_turn(structure, [now, way], u64::BITS, s, &|back| way * back < 0.0)?;
         Some([self.level(sin, structure.base(), s), sin])
     }
 
@@ -98,21 +97,25 @@ impl Foundation {
         self.points.iter().enumerate().map(moment).sum::<f64>() - (weighs / (1.0 - sin * sin).sqrt() + leans) * sin
     }
 
-    /// The first sine `from` this one to the side `way` at which the moment that turns the structure back is not `so` any more. It is sought
-    /// between the bends of this moment over the sine.
+    /// The first sine `from` this one on, and before `far`, at which the moment that turns the structure back is not `so` any more: it is so at
+    /// the sine found, which is as close as `halvings` of the part between two bends of this moment bring it.
     fn first_turn(
         &self,
         structure: &Structure,
-        mut from: f64,
-        way: f64,
+        [mut from, far]: [f64; 2],
+        halvings: u32,
         s: &dyn Fn(usize) -> f64,
         so: &dyn Fn(f64) -> bool,
     ) -> Option<f64> {
-        let is_so = |sin: f64| so(self.turned_back(structure, sin, s));
-        while from.abs() < 1.0 {
-            let to = self.next_bend(structure.base(), from, way, s);
+        let (way, is_so) = (Side::of(far - from).sign(), |sin: f64| so(self.turned_back(structure, sin, s)));
+        while way * (far - from) > 0.0 {
+            let mut to = way * (way * self.next_bend(structure.base(), from, way, s)).min(way * far);
             if !is_so(to) {
-                return Some(way * last_where(way * from, way * to, |sin| is_so(way * sin)));
+                for _ in 0..halvings {
+                    let middle = 0.5 * (from + to);
+                    *(if is_so(middle) { &mut from } else { &mut to }) = middle;
+                }
+                return Some(from);
             }
             from = to;
         }
@@ -162,8 +165,9 @@ impl Foundation {
         };
         // beyond a barrier the structure falls over, or finds another rest
         let room = |way: f64| {
-            let barrier = self.first_turn(structure, sin, way, s, &|back| way * back > 0.0).unwrap_or(way);
-            raised(sin + way * turned.min(way * (barrier - sin))) - raised(sin)
+            let far = (sin + way * turned).clamp(-1.0, 1.0);
+            let barrier = self.first_turn(structure, [sin, far], 6, s, &|back| way * back > 0.0);
+            raised(barrier.unwrap_or(far)) - raised(sin)
         };
         (0.5 * pressed).min(room(1.0)).min(room(-1.0))
     }
