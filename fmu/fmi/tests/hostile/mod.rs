@@ -54,8 +54,6 @@ pub type C = *mut c_void;
 
 /// The model that is called.
 pub struct Target {
-    /// One in so many of `FUZZ_CALLS` is made, because each takes longer.
-    pub one_in: u64,
     /// Its folder `resources`.
     pub resources: TempDir,
     pub variables: Arc<[Variable]>,
@@ -80,7 +78,6 @@ impl Target {
     pub fn of(resources: TempDir, time: fn(&Snapshot) -> f64) -> Target {
         let model = Model::open(resources.path()).unwrap();
         Target {
-            one_in: 1,
             variables: model.variables(),
             token: CString::new(model.token()).unwrap(),
             build: model.build(),
@@ -212,7 +209,7 @@ pub fn no_call_does_harm(subject: &Target, version: u8, is_model: bool) {
     let location = CString::new((version.location)(subject.resources.path())).unwrap();
     let tally = RefCell::new(CallTally(vec![(0, false); version.calls.len()]));
     let config = Config {
-        cases: calls.div_ceil(subject.one_in * CALLS_PER_SEQUENCE as u64) as u32,
+        cases: calls.div_ceil(CALLS_PER_SEQUENCE as u64) as u32,
         failure_persistence: None,
         ..Config::default()
     };
