@@ -1,4 +1,4 @@
-//! What a step of the FMU costs under a record: a host sets an input, steps by 1 ms, and reads five outputs. Prints, as CSV, the share of
+//! The cost of a step of the FMU under a record. A host sets an input, steps by 1 ms, and reads five outputs. Prints, as CSV, the share of
 //! the steps that take so many microseconds or more, and so many steps of the engine. Every run does the same work, so that the
 //! shortest time of a step counts. `make measure WHAT=steps` runs it on El Centro 1940.
 

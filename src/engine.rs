@@ -42,7 +42,6 @@ use crate::series::first_crossing::Crossing;
 use crate::structure::mode::Modes;
 use crate::structure::quantity::{Quantity, Refused, ensure};
 use crate::{Foundation, Output, Phase, State, Structure};
-use contacts::settled;
 use motion::{Motion, Work};
 use phases::Rules;
 use piece::{LeapRoom, Piece, Watch};
@@ -741,8 +740,7 @@ where
             let mut step =
                 Step { level, side, contact, start: &begin, arc: self.arc, reach: self.arc.reach, is_cut: false };
             let closed = first(watched, &mut step);
-            let (reach, moved) = (step.reach, watched.moved(level.subject(), &step));
-            let settled = (contact.yields != 0).then(|| settled(&step));
+            let (reach, (moved, settled)) = (step.reach, watched.moved(level.subject(), &step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
             let has_stalled = || closed.is_none() && duration <= STALLED / level.structure().vibration().rocking[1];

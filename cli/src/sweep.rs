@@ -38,9 +38,8 @@ pub struct SweepArgs {
     /// Picture of the probabilities and fragility curves, or of the maps [default: beside the rows, as SVG]
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
-    /// Runs at a time; 0 is one per core
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    threads: i64,
+    #[command(flatten)]
+    threads: ThreadArgs,
     /// Find, too, how far each run exceeds the model's limits: tension, load of the edge, friction, energy gained at impacts
     #[arg(long)]
     validity: bool,
@@ -48,9 +47,23 @@ pub struct SweepArgs {
     results: FormatArgs,
 }
 
+/// How many runs are done at a time.
+#[derive(clap::Args)]
+pub struct ThreadArgs {
+    /// Runs at a time; 0 is one per core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: i64,
+}
+
+impl ThreadArgs {
+    fn pool(&self) -> anyhow::Result<ThreadPool> {
+        Ok(thread_pool(self.threads)?)
+    }
+}
+
 /// Does the runs that are not in the file yet, then prints and draws the probabilities.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
-    let pool = thread_pool(args.threads)?;
+    let pool = args.threads.pool()?;
     let mut files = OutputFiles::of_inputs([args.file.as_path()]);
     let asked = file::read(&args.file, &mut files)?;
     let output = match &args.output {

@@ -97,7 +97,7 @@ pub struct NamedPeak {
     pub magnitude: f64,
     pub unit: &'static str,
     pub time: f64,
-    /// SureDigits digits, if the condition is found.
+    /// Sure digits, if the condition is found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub digits: Option<u8>,
 }
@@ -105,9 +105,9 @@ pub struct NamedPeak {
 /// How sure the results of a run are.
 #[derive(Clone, Copy, Serialize)]
 pub struct SureDigits {
-    /// SureDigits digits of the peak of θ or, if the structure overturns, of the time until then, as in the rows of a sweep.
+    /// Sure digits of the peak of θ or, if the structure overturns, of the time until then, as in the rows of a sweep.
     pub digits: u8,
-    /// SureDigits digits of whether the structure overturns.
+    /// Sure digits of whether the structure overturns.
     pub overturning_digits: u8,
     /// The least relative change of the input, of those tried, that decides otherwise.
     pub overturning_change: Option<f64>,

@@ -1,9 +1,9 @@
 //! Guards of ground that gives: contact points that are touched, released, and yield, a tendon that goes slack, dissipators that yield.
 //!
 //! A pressed point is released when f returns to 0. A free point is touched when e < 0 and f > 0 hold together. Both depend on the state
-//! and the settlements alone, so that nothing else is remembered between steps. A gap that starts within rounding of its root is divided by time until its first
-//! coefficient is a number. The gap then closes at once, or it opens and must return. Points that act at one instant, as in
-//! vertical motion, follow one another in steps without duration.
+//! and the settlements alone, so that nothing else is remembered between steps. A gap that starts within rounding of its root is divided by
+//! time until its first coefficient is a number. The gap then closes at once, or it opens and must return. Points that act at one instant,
+//! as in vertical motion, follow one another in steps without duration.
 
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
@@ -273,7 +273,7 @@ fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = 
     Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
 }
 
-/// The dissipators at the reach of a step, and what friction and points that yield have taken there.
+/// The dissipators at the reach of a step, and what friction has taken there.
 pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
     let &Step { level, contact, start, arc, reach, .. } = step;
     let (ground, mut moved) = (level.structure().ground(), *start.dissipators);
@@ -288,17 +288,23 @@ pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
         moved.slip += side.sign() * (end().of(place) - arc.u[0].of(place));
         moved.friction += side.sign() * mu_c * rubbed;
     }
-    if contact.yields != 0 {
-        let settled = settled(step);
-        for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
-            moved.settling += point.q * (settled.as_ref()[i] - start.settled[i]);
-        }
-    }
     moved
 }
 
+/// Adds what points that yield have taken over a step, at the end of which they have `settled` by so much.
+pub(super) fn settle<Q: Coordinates>(
+    &Step { level, contact, start, .. }: &Step<Q>,
+    settled: &Q::Settled,
+    moved: &mut Dissipators,
+) {
+    let points = &level.structure().ground().points;
+    for (i, point) in points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
+        moved.settling += point.q * (settled.as_ref()[i] - start.settled[i]);
+    }
+}
+
 /// How far points have settled for good at the reach of a step.
-pub(crate) fn settled<Q: Coordinates>(&Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> Q::Settled {
+pub(super) fn settled<Q: Coordinates>(&Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> Q::Settled {
     let mut settled = Q::Settled::default();
     settled.as_mut().iter_mut().zip(start.settled).for_each(|(settled, start)| *settled = *start);
     let ground = level.structure().ground();
@@ -325,11 +331,8 @@ pub(super) fn normal<Q: Coordinates>(
     arc: &Arc<Q>,
 ) -> Series {
     let (mut normal, points) = (ZERO, Pushes::of(ground, contact, start.settled));
-    let ([mut push, _], by) = (points.push, points.by.map(|by| by.to_array()[0]));
-    for (of, (u, u_dot)) in normal.iter_mut().zip(arc.used(&arc.u).iter().zip(&arc.u_dot)) {
-        let [[y, sin], [y_dot, turning]] = [u, u_dot].map(|of| [of.of(ground.place), of.of(ground.place + 1)]);
-        *of = push + by[0] * y + by[1] * sin + by[2] * y_dot + by[3] * turning;
-        push = 0.0; // of the next order
+    for (k, (u, u_dot)) in arc.used(&arc.u).iter().zip(&arc.u_dot).enumerate() {
+        [normal[k], _] = points.forces([u, u_dot].map(|of| of.footing(ground)), k);
     }
     normal
 }

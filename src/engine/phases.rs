@@ -64,13 +64,16 @@ impl<Q: Coordinates> Rules<Q> {
     const ON_GROUND_TIED: &'static Rules<Q> =
         &Rules { guards: &[&Overturning, &Points, &Tied, &Sliding], moved: Some(contacts::moved), ..Rules::RESTING };
 
-    /// The dissipators at the reach of `step`, if it moves them.
+    /// At the reach of `step`, the dissipators if it moves them, and how far points have settled for good if one yields.
     #[inline]
-    pub(crate) fn moved(&self, subject: &LevelSubject, step: &Step<Q>) -> Option<Dissipators> {
+    pub(crate) fn moved(&self, subject: &LevelSubject, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
         let is_restrained = subject.is_tied && subject.structure.base().is_restrained();
         let PressedPoints { yields, friction, .. } = step.contact;
         let moves = is_restrained || yields != 0 || friction.sign() != 0.0;
-        self.moved.filter(|_| moves).map(|moved| moved(step))
+        let mut moved = self.moved.filter(|_| moves).map(|moved| moved(step));
+        let settled = (yields != 0).then(|| contacts::settled(step));
+        settled.iter().for_each(|settled| moved.iter_mut().for_each(|of| contacts::settle(step, settled, of)));
+        (moved, settled)
     }
 }
 

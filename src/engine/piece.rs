@@ -3,13 +3,12 @@
 //! Within a piece there is no transition. If the engine expanded the motion into a polynomial, the piece has that polynomial. If
 //! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
-use crate::engine::contacts::settled;
 use crate::engine::motion::Motion;
 use crate::engine::phases;
-use crate::engine::sample::{Sample, shown};
+use crate::engine::sample::{Sample, edges_of, shown};
 use crate::engine::step::Step;
 use crate::engine::transition::Transition;
-use crate::levels::level::{Level, Now, edges, off_chord};
+use crate::levels::level::{Level, off_chord};
 use crate::levels::start::Start;
 use crate::mechanics::arc::{Arc, Polynomials};
 use crate::mechanics::instant::Instant;
@@ -132,11 +131,7 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
 
     /// What the edges of the base carry in `state`, `tau` seconds after the start of the piece.
     pub(crate) fn edges(&self, tau: f64, state: &State<Q>) -> Reactions {
-        let &Piece { before, level, .. } = self;
-        let (load, kept, phase) = (self.load.at(tau), before.kept(), before.phase.in_motion(level.structure()));
-        let x = Instant::of(level.structure(), phase, state, load);
-        let second = level.accelerations(phase, &Now { state, load, kept });
-        edges(&x, level.subject(), kept.0, Reactions::at(&x, &second))
+        edges_of(self.level, self.before.phase, (state, self.load.at(tau)), self.before.kept())
     }
 
     /// The state `tau` seconds after the start of the piece.
@@ -169,10 +164,9 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
             let (level, side, contact) = (self.level, self.before.phase.side(), self.before.phase.contact());
             let step =
                 Step { level, side, contact, start: &self.whole().step(), arc, reach: tau / arc.span, is_cut: false };
-            if contact.yields != 0 {
-                motion.settled = settled(&step);
-            }
-            motion.dissipators = watched.moved(level.subject(), &step).unwrap_or(motion.dissipators);
+            let (moved, settled) = watched.moved(level.subject(), &step);
+            motion.dissipators = moved.unwrap_or(motion.dissipators);
+            motion.settled = settled.unwrap_or(motion.settled);
         }
         motion
     }

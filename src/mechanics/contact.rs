@@ -163,11 +163,12 @@ impl Foundation {
             let of_points = self.points.iter().enumerate().map(spring).sum::<f64>();
             of_points + tendon + m_t * g * y + weighs * (1.0 - sin * sin).sqrt() - 0.5 * leans * sin * sin
         };
+        let rest = raised(sin);
         // beyond a barrier the structure falls over, or finds another rest
         let room = |way: f64| {
             let far = (sin + way * turned).clamp(-1.0, 1.0);
             let barrier = self.first_turn(structure, [sin, far], 6, s, &|back| way * back > 0.0);
-            raised(barrier.unwrap_or(far)) - raised(sin)
+            raised(barrier.unwrap_or(far)) - rest
         };
         (0.5 * pressed).min(room(1.0)).min(room(-1.0))
     }

@@ -547,11 +547,11 @@ fn on_ground(frame: &Structure, foundation: &Foundation) -> Vec<String> {
              bounces leave few sure digits; lower f_v, or raise zeta_v"
         ));
     }
-    if let (Some(mu_c), true) = (foundation.mu_c, foundation.mu_c.is_some_and(|mu_c| mu_c < base.tan_alpha_cg)) {
+    if let Some(mu_c) = foundation.mu_c.filter(|mu_c| *mu_c < base.tan_alpha_cg) {
         let [mu_c, slender] = [mu_c, base.tan_alpha_cg].map(short);
         warnings.push(format!("mu_c = {mu_c} is below tan(alpha_cg) = {slender}: the base may slide rather than rock"));
     }
-    if let (Some(fs), true) = (foundation.ground.fs, base.ties.P_0 > 0.0) {
+    if let Some(fs) = foundation.ground.fs.filter(|_| base.ties.P_0 > 0.0) {
         warnings.push(format!(
             "fs = {}: the capacities grow with P_0, which counts as load at rest; give q_u for ground whose strength is known",
             short(fs)

@@ -1,5 +1,6 @@
 //! `design`: the value of a number of a structure at which limits hold in a share of the runs, and the curve over its range.
 
+use super::ThreadArgs;
 use super::file::{self, SweepContent};
 use crate::picture::{Picture, axes, chart, colour, dashed, line, px, titled};
 use crate::results::{FormatArgs, csv};
@@ -10,7 +11,6 @@ use rocking::digits::significant;
 use rocking_report::output_files::OutputFiles;
 use rocking_sweep::design::{Design, DesignPoint, Designed};
 use rocking_sweep::row_file::heading;
-use rocking_sweep::thread_pool;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -24,9 +24,8 @@ pub struct DesignArgs {
     /// Picture of the curve, SVG
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
-    /// Runs at a time; 0 is one per core
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    threads: i64,
+    #[command(flatten)]
+    threads: ThreadArgs,
     #[command(flatten)]
     results: FormatArgs,
 }
@@ -34,7 +33,7 @@ pub struct DesignArgs {
 pub fn run(args: &DesignArgs) -> anyhow::Result<()> {
     let output = args.output.as_deref();
     args.results.check_beside(output)?;
-    let (pool, mut files) = (thread_pool(args.threads)?, OutputFiles::of_inputs([args.file.as_path()]));
+    let (pool, mut files) = (args.threads.pool()?, OutputFiles::of_inputs([args.file.as_path()]));
     let SweepContent::Design(design, records) = file::read(&args.file, &mut files)? else {
         bail!("[design] is missing: `rocking-fmu design --help` ends with such a file");
     };
