@@ -58,9 +58,9 @@ pub(crate) struct OnGround<V: Abreast> {
 #[derive(Clone, Copy)]
 pub(crate) struct Pushes {
     /// Σ N and Σ ξ N at y = sin θ = 0 and at rest.
-    pub push: [f64; 2],
+    push: [f64; 2],
     /// N and Σ ξ N by y, sin θ, ẏ and θ̇ cos θ.
-    pub by: [f64x2; 4],
+    by: [f64x2; 4],
     /// The power of the dashpots of elastic points is taken (ẏ − lever θ̇ cos θ)² and what is left for (θ̇ cos θ)².
     pub taken: f64,
     pub lever: f64,
@@ -223,9 +223,8 @@ impl<V: Abreast> OnGround<V> {
         let (under, modes) = (structure.ground(), structure.modes().len());
         let slide = under.slide();
         let span = start.interval.min(self.longest_span).min(under.longest_yielding(contact));
-        let pushes @ Pushes { by, taken, lever, left_for_turning, .. } =
+        let pushes @ Pushes { taken, lever, left_for_turning, .. } =
             Pushes::of(under, contact, settled).with_ties(&self.subject, start, contact);
-        let mut push = pushes.push;
         let (ground, mut weight) = ([a_g.value, a_g.slope * span], [g + a_v.value, a_v.slope * span]);
         let GroundScratch { fours, left, right, squared, pushed, square } = &mut **self.scratch.borrow_mut();
         let fours = fours.as_mut();
@@ -294,7 +293,8 @@ impl<V: Abreast> OnGround<V> {
             }
             let rates = arc.u_dot[n].footing(under);
             arc.u_dot[n].set_footing(under, Footing { taken: power, ..rates });
-            let [N, M] = (f64x2::new(push) + by[0] * y + by[1] * sin + by[2] * y_dot + by[3] * turning).to_array();
+            let [of, of_rates] = [[y, sin], [y_dot, turning]].map(|[y, sin]| Footing { y, sin, taken: 0.0 });
+            let [N, M] = pushes.forces([of, of_rates], n);
             let fall = fall - (ground[0] * cos + ground[1] * cos_before);
             let hang = hang + ground[0] * sin + ground[1] * sin_before;
             let [mut moment, mut upwards] = [V::default(); 2];
@@ -327,7 +327,7 @@ impl<V: Abreast> OnGround<V> {
             right[MAX_ORDER - n][1] = f64x4::new([next_sin, next_cos, hang + gamma * cos_0, M]);
             theta_dot = theta_ddot * per;
             (y, y_dot) = (y_dot * per, (gamma - weight[0]) * per);
-            (push, weight) = ([0.0; 2], [weight[1], 0.0]); // of the next order
+            weight = [weight[1], 0.0]; // of the next order
             let (new, new_rate) = (&mut arc.u[order], &mut arc.u_dot[order]);
             for four in fours.iter_mut() {
                 let along = four.resistance + four.share * (sin_0 * gamma) - four.height * theta_ddot;
