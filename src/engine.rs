@@ -451,7 +451,7 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// Advances until `last_step` steps have been taken since the start.
     #[inline]
-    pub(crate) fn advance_within<W: Watch<Q>>(
+    pub fn advance_within<W: Watch<Q>>(
         &mut self,
         last_step: u64,
         interval: f64,

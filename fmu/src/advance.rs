@@ -9,15 +9,20 @@ use rocking::{LinearLoad, Watch};
 /// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// Steps of the engine that are rehearsed at most: some milliseconds.
+const REHEARSED_STEPS: u64 = 100;
+
 /// How an advance has ended.
 type Stop = Result<Progress, AdvanceError>;
 
 impl<Q: Runs> Scene<Q> {
-    /// Takes a step under `inputs` and goes back, so that the first step of the host finds code and memory at hand.
+    /// Takes a step under `inputs` and goes back, so that the first step of the host finds code and memory at hand. A structure that needs
+    /// many steps of the engine is taken a part of the way.
     pub fn rehearse(&mut self, inputs: LinearLoad<Q>) {
         let start = *self.engine.motion();
         let step = self.engine.structure().vibration().rocking[1].recip().min(1e-3);
-        _ = self.engine.advance(step, inputs, &mut ()); // if it fails, the host's own step says why
+        let last_step = start.work.steps + REHEARSED_STEPS;
+        _ = self.engine.advance_within(last_step, step, inputs, &mut ()); // if it fails, the host's own step says why
         self.engine.set_motion(start);
     }
 
