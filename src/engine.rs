@@ -280,7 +280,7 @@ impl Engine<Modes> {
         let Motion { phase, state, .. } = &self.motion;
         match phase {
             Phase::OnGround(pressed) => contact::energy(self.structure(), *pressed, state, self.motion.kept()),
-            _ => energy(self.structure(), *phase, state),
+            Phase::FullContact | Phase::Rocking(_) | Phase::Overturned(_) => energy(self.structure(), *phase, state),
         }
     }
 }

@@ -161,7 +161,9 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => self.rocking.series(side, start, arc),
-            _ => full_contact::series(&self.one, start, arc),
+            Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) => {
+                full_contact::series(&self.one, start, arc)
+            }
         }
     }
 

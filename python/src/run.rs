@@ -67,9 +67,9 @@ impl PyRun {
         self.of.conditions.tolerance
     }
 
-    /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
-    /// delta_t (m, Eq 26), uplift (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). A tendon adds P_t
-    /// (N), dissipators F_d1 and F_d2 (N). Many masses: a_g, theta, uplift, V_t, M_t, and of each floor from 1 on u[1], drift[1], delta_t[1], a_t[1], V[1], M[1].
+    /// The exact largest magnitudes by name, each a Peak (a float with unit and time): a_g (m/s2) and the outputs that have a peak, such as
+    /// theta (rad), V_t (N) and the forces of ties (N); of many masses of each floor or storey from 1 on, such as a_t[1] (m/s2). The page
+    /// of variables has them all.
     /// If the structure overturns, the peaks are those before its fall.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

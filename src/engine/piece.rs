@@ -363,12 +363,11 @@ impl<'a, Q: Coordinates> Expansion<'a, Q> {
     pub(crate) fn over(&self, turns: bool) -> Instant<'a, Terms, Polynomials<'a, Q>> {
         let &Expansion { piece: &Piece { before, level, load, .. }, from, arc } = self;
         let (structure, phase, LinearLoad { value, slope }) = (level.structure(), before.phase, load.from(from));
-        let (theta, theta_dot, turn) = match phase {
-            Phase::FullContact => (Terms::constant(0.0), Terms::constant(0.0), Turn::none()),
-            Phase::Rocking(_) | Phase::Overturned(_) | Phase::OnGround(_) => {
-                let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|of| Terms::of(of, arc.order));
-                (theta, theta_dot, if turns { theta.turn() } else { Turn::none() })
-            }
+        let (theta, theta_dot, turn) = if phase.properties().is_down {
+            (Terms::constant(0.0), Terms::constant(0.0), Turn::none())
+        } else {
+            let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|of| Terms::of(of, arc.order));
+            (theta, theta_dot, if turns { theta.turn() } else { Turn::none() })
         };
         let [u, u_dot] = [&arc.u, &arc.u_dot].map(|of| Polynomials::Motion(arc.used(of)));
         let a_g = Terms::ramp(value.a_g, slope.a_g * arc.span);
