@@ -18,7 +18,7 @@ use crate::mechanics::reach::{Magnitudes, OffChord, magnitudes};
 use crate::numbers::{Angle, Number, Turn};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
 use crate::series::terms::Terms;
-use crate::{Friction, Output, Phase, Ramp, Reactions, State, Structure};
+use crate::{Friction, Output, Ramp, Reactions, State, Structure};
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
 
