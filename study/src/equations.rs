@@ -33,7 +33,7 @@ impl LateralEquations for PhaseEquations<'_> {
                 nonlinear::accelerations(self.structure, side, &state, load, &Dissipators::NEW)
                     .unwrap_or_else(|| Vector2::repeat(f64::NAN))
             }
-            Phase::OnGround(_) => unreachable!("{RIGID}"),
+            _ => unreachable!("{RIGID}"),
         }
     }
 }

@@ -32,7 +32,7 @@ impl PhaseEnd<'_> {
         match self.phase {
             Phase::FullContact => -(self.uplift)(self.structure, state),
             Phase::Rocking(side) | Phase::Overturned(side) => side.sign() * state.theta,
-            Phase::OnGround(_) => unreachable!("{RIGID}"),
+            _ => unreachable!("{RIGID}"),
         }
     }
 
@@ -43,7 +43,7 @@ impl PhaseEnd<'_> {
                 let (angle, rate) = (side.sign() * state.theta, side.sign() * state.theta_dot);
                 angle < 0.0 || (angle == 0.0 && rate < 0.0) || angle >= FRAC_PI_2
             }
-            Phase::Overturned(_) | Phase::OnGround(_) => false,
+            _ => false,
         }
     }
 
@@ -53,7 +53,7 @@ impl PhaseEnd<'_> {
             Phase::FullContact => (Phase::Rocking(Side::of(before.u)), before),
             Phase::Rocking(side) if side.sign() * before.theta >= FRAC_PI_2 => (Phase::Overturned(side), before),
             Phase::Rocking(side) => impact::resolve(&(*self.structure).into(), 0.0, side, &before),
-            Phase::Overturned(_) | Phase::OnGround(_) => (self.phase, before),
+            _ => (self.phase, before),
         }
     }
 }

@@ -230,8 +230,8 @@ proptest! {
             match now {
                 Phase::FullContact => prop_assert_eq!((state.theta, state.theta_dot), (0.0, 0.0)),
                 Phase::Rocking(side) => prop_assert!((-1e-12..FRAC_PI_2).contains(&(side.sign() * state.theta))),
-                Phase::OnGround(_) => unreachable!("the ground is rigid"),
                 Phase::Overturned(side) => prop_assert!((side.sign() * state.theta - FRAC_PI_2).abs() < 1e-9),
+                _ => unreachable!("the ground is rigid"),
             }
             prop_assert!(transitions.is_sorted_by(|one, next| one.time <= next.time));
             if peak == 0.0 && matches!(detail, Detail::Auto | Detail::Nonlinear) {
