@@ -502,13 +502,12 @@ impl<Q: Coordinates> Engine<Q> {
     ) -> Result<Progress, AdvanceError> {
         let Engine { level, motion, arc, room, settings: Settings { stops, .. }, .. } = self;
         let (level, stops) = (&**level, *stops);
-        let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
         let expand = |phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>| {
             level.series(phase, start, arc);
             true
         };
         let mut advance = Advance::new(level.structure(), motion.time, interval, load, last_step);
-        let progress = Loop { level, phases, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
+        let progress = Loop { level, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
         Ok(progress.expect("every series is there"))
     }
 
@@ -661,10 +660,8 @@ impl<Q: Coordinates> Advance<Q> {
 }
 
 /// The loop over the steps of one advance.
-struct Loop<'a, Q: Coordinates, P, E> {
+struct Loop<'a, Q: Coordinates, E> {
     level: &'a dyn Level<Q>,
-    /// Gives the phase of a motion; none where the motion is over.
-    phases: P,
     /// Writes the series of a step, or says that the series is not there yet.
     expand: E,
     /// The step.
@@ -674,12 +671,7 @@ struct Loop<'a, Q: Coordinates, P, E> {
     stops: bool,
 }
 
-impl<Q, P, E> Loop<'_, Q, P, E>
-where
-    Q: Coordinates,
-    P: Fn(&Motion<Q>) -> Option<&'static Rules<Q>>,
-    E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool,
-{
+impl<Q: Coordinates, E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool> Loop<'_, Q, E> {
     /// Goes on with `advance` step by step: expands the motion, finds the first guard that closes, applies its transition. A long
     /// interval is taken in parts, each twice as long as the one before, until the rest is one leap. The motion `before` the first
     /// change is kept: an advance that fails changes nothing. Returns none where a series is not there yet.
@@ -697,7 +689,7 @@ where
         let Start { a_g, a_top, a_v, local_error, .. } =
             level.subject().start(motion.state, motion.kept(), load, interval);
         loop {
-            let Some(watched) = (self.phases)(motion) else { return Ok(Some(Progress::Overturned)) };
+            let Some(watched) = phases::of(level.structure(), motion) else { return Ok(Some(Progress::Overturned)) };
             let Advance { elapsed, part, .. } = advance;
             if elapsed >= interval {
                 return Ok(Some(Progress::Complete));
@@ -805,39 +797,7 @@ pub(crate) fn first<Q: Coordinates>(watched: &Rules<Q>, step: &mut Step<Q>) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::first_crossing::{Gap, first_time_all_closed};
-    use crate::{OneMass, Parameters, TransitionKind};
-    use approx::assert_relative_eq;
-    use guard::Guard;
-    use std::f64::consts::PI;
-    use step::Branch;
-
-    /// Amplitude of the vibration, m.
-    const AMPLITUDE: f64 = 1e-3;
-
-    /// A wall at half the amplitude, from which the top mass bounces.
-    struct Wall;
-
-    impl Guard for Wall {
-        fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Branch) {
-            let is_there = Gap::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
-            let moves_on = Gap::new(arc.used(&arc.u_dot), -1.0, 0.0);
-            (first_time_all_closed([is_there, moves_on], reach), Branch::default())
-        }
-
-        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _branch: Branch) -> Option<TransitionKind> {
-            motion.state.u_dot *= -1.0;
-            Some(TransitionKind::Landing)
-        }
-
-        fn stays_open(&self, _now: &Sample, _ahead: f64) -> bool {
-            false
-        }
-
-        fn indicator(&self, _now: &Sample) -> (usize, f64) {
-            (0, 1.0)
-        }
-    }
+    use crate::{OneMass, Parameters};
 
     /// Truncation below rounding would be work without an effect.
     #[test]
@@ -846,31 +806,5 @@ mod tests {
         let of =
             |tolerance| Engine::new(structure, State::default(), 0.0, tolerance).unwrap().level.subject().local_error;
         assert_eq!([1e-15, 1e-9, 0.1].map(of), [0.5 * f64::EPSILON, LOCAL_SHARE * 1e-9, LARGEST_LOCAL_ERROR]);
-    }
-
-    /// Vibration without damping between the wall and its far end takes 2/3 of a period.
-    #[test]
-    fn a_new_phase_is_one_more_list_of_guards() {
-        static WALLED: Rules = Rules { guards: &[&Wall], ..Rules::RESTING };
-        let structure = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
-        let settings = Settings { detail: Detail::Nonlinear, tolerance: 1e-12, ..Settings::default() };
-        let released = State { u: -AMPLITUDE, ..State::default() };
-        let mut engine = Engine::with(structure, released, 0.0, settings).unwrap();
-        let Engine { level, motion, arc, room, .. } = &mut engine;
-        let mut bounces = Vec::new();
-        let mut watch = |transition: &Transition| bounces.push(transition.time);
-        let expand = |phase: Phase, start: &Start, arc: &mut Arc| {
-            level.series(phase, start, arc);
-            true
-        };
-        let interval = 9.0 * PI / structure.omega_fc;
-        let mut advance = Advance::new(&structure.into(), 0.0, interval, LinearLoad::default(), u64::MAX);
-        Loop { level: &**level, phases: |_: &Motion| Some(&WALLED), expand, arc, room, stops: false }
-            .go(motion, &mut None, &mut advance, &mut watch)
-            .unwrap();
-        assert_eq!(bounces.len(), 7);
-        for (k, time) in bounces.into_iter().enumerate() {
-            assert_relative_eq!(time * structure.omega_fc, (2 * k + 1) as f64 * 2.0 * PI / 3.0, max_relative = 1e-10);
-        }
     }
 }

@@ -159,12 +159,12 @@ impl<S: Simd> Answers<S> {
     }
 }
 
-operator!([S: Simd] Lanes<S>: Add<Self>, add, |own, other| Lanes { of: own.simd.add_f64s(own.of, other.of), ..own });
-operator!([S: Simd] Lanes<S>: Sub<Self>, sub, |own, other| Lanes { of: own.simd.sub_f64s(own.of, other.of), ..own });
-operator!([S: Simd] Lanes<S>: Mul<Self>, mul, |own, other| Lanes { of: own.simd.mul_f64s(own.of, other.of), ..own });
-operator!([S: Simd] Lanes<S>: Div<Self>, div, |own, other| Lanes { of: own.simd.div_f64s(own.of, other.of), ..own });
-operator!([S: Simd] Answers<S>: BitAnd<Self>, bitand, |own, other| Answers { of: own.simd.and_m64s(own.of, other.of), ..own });
-operator!([S: Simd] Answers<S>: BitOr<Self>, bitor, |own, other| Answers { of: own.simd.or_m64s(own.of, other.of), ..own });
+operator!([S: Simd] Lanes<S>: Add<Self>, add, |a, b| Lanes { of: a.simd.add_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Lanes<S>: Sub<Self>, sub, |a, b| Lanes { of: a.simd.sub_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Lanes<S>: Mul<Self>, mul, |a, b| Lanes { of: a.simd.mul_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Lanes<S>: Div<Self>, div, |a, b| Lanes { of: a.simd.div_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Answers<S>: BitAnd<Self>, bitand, |a, b| Answers { of: a.simd.and_m64s(a.of, b.of), ..a });
+operator!([S: Simd] Answers<S>: BitOr<Self>, bitor, |a, b| Answers { of: a.simd.or_m64s(a.of, b.of), ..a });
 
 impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;
