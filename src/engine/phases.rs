@@ -117,13 +117,17 @@ impl<Q: Coordinates> Guard<Q> for Uplift {
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
-        (0, now.level.uplift_margin(&now.motion.under(now.load)).0 + BAND)
+        (0, uplift_margin(now).0 + BAND)
     }
 
     fn closed(&self, now: &Sample<Q>) -> Option<Branch> {
-        let (margin, side) = now.level.uplift_margin(&now.motion.under(now.load));
+        let (margin, side) = uplift_margin(now);
         (margin <= 0.0).then_some(about(side))
     }
+}
+
+fn uplift_margin<Q: Coordinates>(Sample { motion, load, level }: &Sample<Q>) -> (f64, Side) {
+    level.uplift_margin(&motion.state, *load, &motion.dissipators)
 }
 
 fn about(side: Side) -> Branch {

@@ -104,13 +104,8 @@ fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
 pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
     let (base, angles) = (level.structure().base(), level.subject().angles);
     let chord = || angles.chord(evaluate(arc.used(&arc.theta), reach), 0.0).length;
-    let power = |(c, rate): (f64, Terms)| c * (square_integral(rate.used(), reach) * arc.span);
+    let power = |(c, rate): (f64, Terms)| c * (product_integral(rate.used(), rate.used(), reach) * arc.span);
     start.dissipators.stepped(base, |j| levers(base, side)[j] * chord(), dampers(base, angles, arc).map(power))
-}
-
-/// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.
-pub(super) fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
-    product_integral(coefficients, coefficients, reach)
 }
 
 /// ∫ (Σ a_k σᵏ) (Σ b_k σᵏ) dσ from 0 to `reach`.

@@ -15,14 +15,6 @@ use std::any::Any;
 use std::cell::RefCell;
 use std::fmt::{self, Debug};
 
-/// A structure at one instant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Now<'a, Q = f64> {
-    pub state: &'a State<Q>,
-    pub load: Load<Q>,
-    pub kept: Kept<'a>,
-}
-
 /// The structure that a level moves, and how it is moved.
 #[derive(Clone, Debug)]
 pub(crate) struct LevelSubject {
@@ -106,7 +98,7 @@ pub trait Level<Q: Coordinates = f64>: Send + Any {
     }
 
     /// Distance of a structure in full contact from uplift, and its side, as in [`Liftable::margin`].
-    fn uplift_margin(&self, &Now { state, load, kept: (dissipators, _) }: &Now<Q>) -> (f64, Side) {
+    fn uplift_margin(&self, state: &State<Q>, load: Load<Q>, dissipators: &Dissipators) -> (f64, Side) {
         let a_top = load.on_modes(self.structure());
         self.liftable().map_or((1.0, Side::Right), |of| of.margin(state, [load.a_g, load.a_v], &a_top, dissipators))
     }
@@ -125,7 +117,7 @@ pub trait Level<Q: Coordinates = f64>: Send + Any {
     fn first(&self) -> &RefCell<Box<Arc<Q>>>;
 
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
-    fn accelerations(&self, phase: Phase, &Now { state, load, kept }: &Now<Q>) -> Second<f64, Q> {
+    fn accelerations(&self, phase: Phase, (state, load): (&State<Q>, Load<Q>), kept: Kept) -> Second<f64, Q> {
         let [second] = derivatives(self, phase, (state, kept, load.into()), &mut self.first().borrow_mut());
         second
     }

@@ -579,7 +579,6 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::levels::level::Now;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::lateral::Lateral;
     use crate::mechanics::load::Load;
@@ -610,17 +609,17 @@ mod tests {
             let [u, u_dot] = [[2.5, -1.5], [200.0, 50.0]].map(|of| Modes::new(&of.map(|it| scale * it)));
             let state = State { u, u_dot, theta: 0.0, theta_dot: 0.0 };
             let load = Load { a_g: 0.7, F_t: Modes { rest: [6e4, -9e4], ..Modes::new(&[90.0, 50.0]) }, a_v };
-            let now = Now { state: &state, load, kept: (&dissipators, &[0.0; MOST_POINTS]) };
+            let kept = (&dissipators, &[0.0; MOST_POINTS]);
             let springs = Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 9e4;
             let expected = [Side::Right, Side::Left].map(|side| {
                 let residual = |(xi, e_p): (f64, f64)| -1e7 * e_p * (side.sign() * B - xi);
                 let residual: f64 = [(0.5, 2e-3), (-0.5, -1e-3)].map(residual).iter().sum();
                 let held = m_t * (g + a_v) * B + 2e5 * B + side.sign() * residual;
                 let inertia = inertia(frame.base(), frame.modes(), side, |j| u.of(j));
-                let turns = level.accelerations(Phase::Rocking(side), &now).theta_ddot * inertia;
+                let turns = level.accelerations(Phase::Rocking(side), (&state, load), kept).theta_ddot * inertia;
                 ((held - side.sign() * springs) / weight).max(-side.sign() * turns / weight)
             });
-            let (found, side) = level.uplift_margin(&now);
+            let (found, side) = level.uplift_margin(&state, load, &dissipators);
             let least = if side == Side::Right { expected[0] } else { expected[1] };
             assert_relative_eq!(found, least, max_relative = 1e-9);
             assert!(found <= expected[0].min(expected[1]) + 1e-9, "{found} {expected:?}");
@@ -648,8 +647,7 @@ mod tests {
         for (phase, state) in
             [(Phase::Rocking(Side::Left), turned), (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..turned })]
         {
-            let now = Now { state: &state, load, kept: (&Dissipators::NEW, &[0.0; MOST_POINTS]) };
-            let second = level.accelerations(phase, &now);
+            let second = level.accelerations(phase, (&state, load), (&Dissipators::NEW, &[0.0; MOST_POINTS]));
             let x = Instant::<f64, Modes>::of(&frame, phase, &state, load);
             let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
             let x = Instant { theta_ddot: second.theta_ddot, ..x };

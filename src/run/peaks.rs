@@ -310,7 +310,7 @@ impl Peaks {
             self.look_over(&expansion, bounds);
             arcs.skip_middle();
             let (structure, start) = (piece.level.structure(), piece.before.time);
-            if arcs.left().is_some_and(|rest| !self.may_change(structure, &rest.most(), start + rest.start.0)) {
+            if arcs.left.is_some_and(|rest| !self.may_change(structure, &rest.most(), start + rest.start.0)) {
                 break;
             }
         }

@@ -29,14 +29,16 @@ use crate::digits::short;
 use crate::engine::piece::{Expansion, Piece, PiecePart, Watch};
 use crate::engine::sample::Sample;
 use crate::levels::level::off_chord;
+use crate::mechanics::energy::kinetic;
 use crate::mechanics::impact;
+use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{
-    Base, Detail, Foundation, Impulse, Mode, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
+    Base, Detail, Foundation, Impulse, Load, Mode, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
     Structure, Transition, TransitionKind,
 };
 pub use assumptions::{
@@ -296,7 +298,7 @@ impl Validity {
         if is_landing && is_no_impact {
             return;
         }
-        let kinetic = impact::kinetic_energy::<Q>(structure, side, &before);
+        let kinetic = kinetic(&Instant::<f64, Q>::of(structure, Phase::Rocking(side), &before, Load::NONE));
         if kinetic == 0.0 {
             return;
         }
@@ -326,7 +328,7 @@ impl<Q: Coordinates> Watch<Q> for Validity {
         }
         let (mut arcs, mut count) = (piece.arcs(), 0);
         loop {
-            if arcs.left().and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
+            if arcs.left.and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
                 break;
             }
             let Some(expansion) = arcs.next() else { break };
