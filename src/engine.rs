@@ -296,7 +296,7 @@ impl<Q: Coordinates> Engine<Q> {
         phase: Phase,
     ) -> Engine<Q> {
         let subject = level.subject();
-        let (base, chord) = (subject.structure.base(), subject.angles.chord(state.theta, 0.0).length);
+        let (base, chord) = (subject.structure.base(), subject.detail.angles().chord(state.theta, 0.0).length);
         let moved = Dissipators::NEW.moved_to(base, |j| levers(base, phase.side())[j] * chord);
         let motion = Motion {
             time,
@@ -368,7 +368,7 @@ impl<Q: Coordinates> Engine<Q> {
         if phase.properties().is_over {
             return Restraints::default();
         }
-        let (second, angles) = (self.sample(load).second(), self.level.subject().angles);
+        let (second, angles) = (self.sample(load).second(), self.level.subject().detail.angles());
         let x = Instant::moving(self.structure(), *phase, state, &second, load.into());
         let Restraints { P_t, F_d1, F_d2 } = restraints(&x, angles, dissipators);
         Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }

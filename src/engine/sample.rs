@@ -48,7 +48,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
-        restraints(&self.instant(), self.level.subject().angles, &self.motion.dissipators)
+        restraints(&self.instant(), self.level.subject().detail.angles(), &self.motion.dissipators)
     }
 
     /// The value of `output`; once overturned, the value of the instant before.

@@ -1,5 +1,6 @@
 //! A level of detail as the engine uses it: equations, uplift, and exact leaps where there are any.
 
+use crate::levels::detail::Detail;
 use crate::levels::full_contact::{self, ExactContact};
 use crate::levels::start::{MIN_ORDER, Start};
 use crate::levels::uplift::Liftable;
@@ -8,7 +9,7 @@ use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reactions::Reactions;
-use crate::mechanics::restraint::{Angles, Dissipators, Kept, pulls};
+use crate::mechanics::restraint::{Dissipators, Kept, pulls};
 use crate::numbers::{Angle, Real};
 use crate::{Phase, Side, State, Structure};
 use std::any::Any;
@@ -23,8 +24,8 @@ pub(crate) struct LevelSubject {
     pub local_error: f64,
     /// Whether the structure is restrained or shaken vertically: its equations of rocking then have more terms.
     pub is_tied: bool,
-    /// The angles at which the ties elongate.
-    pub angles: Angles,
+    /// The level of detail, with the angles at which the ties elongate.
+    pub detail: Detail,
 }
 
 impl LevelSubject {
@@ -132,14 +133,14 @@ impl<Q: Coordinates> Debug for dyn Level<Q> + '_ {
 /// The part of `reactions` that the edges of the base carry at the instant `x`: all of it, unless the structure is restrained.
 pub(crate) fn edges<N: Angle, Q: Lateral<N>>(
     x: &Instant<N, Q>,
-    &LevelSubject { is_tied, angles, .. }: &LevelSubject,
+    &LevelSubject { is_tied, detail, .. }: &LevelSubject,
     dissipators: &Dissipators,
     reactions: Reactions<N>,
 ) -> Reactions<N> {
     if !is_tied {
         return reactions;
     }
-    let [up, right, moment] = pulls(x, angles, dissipators);
+    let [up, right, moment] = pulls(x, detail.angles(), dissipators);
     Reactions { R_h: reactions.R_h - right, R_v: reactions.R_v + up, R_m: reactions.R_m + moment }
 }
 
@@ -196,9 +197,6 @@ pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
 
 /// Equations of rocking with an elastic strut.
 pub(crate) trait ElasticRocking {
-    /// Whether the base can lift off.
-    const IS_POSSIBLE: bool = true;
-
     fn leap(&self, _side: Side, _start: &Start) -> Option<State> {
         None
     }
@@ -218,14 +216,4 @@ pub(crate) trait ElasticRocking {
     fn lean(&self) -> f64 {
         1.0
     }
-}
-
-/// A base that never rocks.
-#[derive(Clone, Debug)]
-pub(crate) struct FixedBase;
-
-impl ElasticRocking for FixedBase {
-    const IS_POSSIBLE: bool = false;
-
-    fn series(&self, _side: Side, _start: &Start, _arc: &mut Arc) {}
 }

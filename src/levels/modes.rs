@@ -37,7 +37,6 @@ use wide::f64x4;
 #[derive(Clone, Debug)]
 pub(crate) struct ManyModes<Q: Coordinates> {
     subject: LevelSubject,
-    detail: Detail,
     pub base: Base,
     modes: Vec<Mode>,
     /// Mass (kg) and height (m) of a top mass that turns rigidly with the base.
@@ -238,9 +237,9 @@ impl<V: Abreast> ModeGroup<V> {
 }
 
 impl<Q: Coordinates> ManyModes<Q> {
-    /// The structure of `subject` at a level of this `detail`; at the level `rigid` the one mass turns rigidly with the base.
-    pub(crate) fn new(subject: LevelSubject, detail: Detail) -> ManyModes<Q> {
-        let structure = &subject.structure;
+    /// The structure of `subject`; at the level `rigid` the one mass turns rigidly with the base.
+    pub(crate) fn new(subject: LevelSubject) -> ManyModes<Q> {
+        let (structure, detail) = (&subject.structure, subject.detail);
         let (mut base, mut modes, mut vibration) = (*structure.base(), Q::modes(structure), structure.vibration());
         let mut rigid = None;
         if let (Detail::Rigid, &[Mode { mass: m, height: H, .. }]) = (detail, modes) {
@@ -272,7 +271,6 @@ impl<Q: Coordinates> ManyModes<Q> {
             first: RefCell::default(),
             modes,
             subject,
-            detail,
             base,
             rigid,
             vibration,
@@ -287,7 +285,7 @@ impl<Q: Coordinates> ManyModes<Q> {
     /// The structure as far as uplift depends on it.
     fn standing(&self) -> Liftable<'_> {
         let ManyModes { base, modes, rigid, .. } = self;
-        let has_constant_inertia = self.subject.angles == Angles::Small;
+        let has_constant_inertia = self.subject.detail.angles() == Angles::Small;
         Liftable { base, modes, rigid: *rigid, lean: 1.0, has_constant_inertia }
     }
 
@@ -466,8 +464,9 @@ impl<Q: Coordinates> ManyModes<Q> {
 
     /// The moment of the ties about `side` as a series, if there are ties.
     fn ties(&self, side: Side, start: &Start<Q>) -> Option<MomentSeries> {
-        let &LevelSubject { is_tied, angles, .. } = &self.subject;
-        is_tied.then(|| Restraint::about(&self.base, side, start.dissipators).series(angles, start.state.theta))
+        let &LevelSubject { is_tied, detail, .. } = &self.subject;
+        is_tied
+            .then(|| Restraint::about(&self.base, side, start.dissipators).series(detail.angles(), start.state.theta))
     }
 
     /// Writes the motion while rocking about `side` by small angles into `arc`. From (M10) and (M11), with e = (c u̇ + k u)/μ,
@@ -544,7 +543,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 
     fn series(&self, phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>) {
         match phase {
-            Phase::Rocking(side) if self.detail == Detail::Linear => self.rocking_little(side, start, arc),
+            Phase::Rocking(side) if self.subject.detail == Detail::Linear => self.rocking_little(side, start, arc),
             Phase::Rocking(side) if self.is_rigid() => self.rocking_rigidly(side, start, arc),
             Phase::Rocking(side) => self.rocking(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) if self.is_rigid() => {
@@ -563,11 +562,11 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
     fn is_singular(&self, phase: Phase, state: &State<Q>) -> bool {
         let (&Base { m_t, J0, B, .. }, Phase::Rocking(side)) = (&self.base, phase) else { return false };
         let inertia = || inertia(&self.base, &self.modes, side, |j| state.u.of(j));
-        self.detail != Detail::Linear && inertia() < LEAST_INERTIA * (J0 + m_t * B * B)
+        self.subject.detail != Detail::Linear && inertia() < LEAST_INERTIA * (J0 + m_t * B * B)
     }
 
     fn liftable(&self) -> Option<Liftable<'_>> {
-        (self.detail != Detail::FixedBase).then(|| self.standing())
+        (self.subject.detail != Detail::FixedBase).then(|| self.standing())
     }
 
     fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
@@ -591,8 +590,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
-        let angles = detail.angles();
-        ManyModes::new(LevelSubject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
+        ManyModes::new(LevelSubject { structure: frame.clone(), local_error: 1e-16, is_tied: true, detail })
     }
 
     /// The distance from uplift is the larger of what (M3) misses and of −s D θ̈, by the equations of rocking, under all loads.
