@@ -159,15 +159,11 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The truncation error that a step may have.
-    fn local_error(&self) -> Result<f64, Refused> {
-        check_tolerance(self.tolerance)?;
-        Ok((LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR))
-    }
-
     /// The level of detail at which `structure` moves that is turned by `theta` (rad).
     fn level<Q: Coordinates>(self, kind: &Kind<Q>, structure: Structure, theta: f64) -> LevelOrNot<Q> {
-        let level = (kind.level)(self.detail, structure, self.local_error()?, self.vertical)?;
+        check_tolerance(self.tolerance)?;
+        let local_error = (LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
+        let level = (kind.level)(self.detail, structure, local_error, self.vertical)?;
         ensure(self.detail.has_uplift() || theta == 0.0, || {
             format!(
                 "theta_0 = {theta:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0"

@@ -152,8 +152,12 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
         self.end
     }
 
-    /// The motion at `time`, `tau` seconds after the start of the piece.
-    fn motion_at(&self, time: f64, tau: f64) -> Motion<Q> {
+    /// The motion at `time` (s), which lies within the piece.
+    pub fn sample(&self, time: f64) -> Sample<'_, Q> {
+        let end = self.before.time + self.duration;
+        // an instant that misses the end by the clock's rounding is the end
+        let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
+        let tau = if is_before { time - self.before.time } else { self.duration };
         let mut motion = Motion { time, state: self.state_at(tau), ..*self.before };
         if let Some((watched, arc)) = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc) {
             let (level, side, contact) = (self.level, self.before.phase.side(), self.before.phase.contact());
@@ -163,16 +167,7 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
             motion.dissipators = moved.unwrap_or(motion.dissipators);
             motion.settled = settled.unwrap_or(motion.settled);
         }
-        motion
-    }
-
-    /// The motion at `time` (s), which lies within the piece.
-    pub fn sample(&self, time: f64) -> Sample<'_, Q> {
-        let end = self.before.time + self.duration;
-        // an instant that misses the end by the clock's rounding is the end
-        let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
-        let tau = if is_before { time - self.before.time } else { self.duration };
-        Sample { motion: self.motion_at(time, tau), load: self.load.at(tau), level: self.level }
+        Sample { motion, load: self.load.at(tau), level: self.level }
     }
 }
 

@@ -210,7 +210,8 @@ impl Validity {
         })
     }
 
-    /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
+    /// Looks at the motion over a polynomial for the worst value of each assumption and for the time beyond its limit; `extents` are bounds of
+    /// its reactions.
     fn look<Q: Coordinates>(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
         expansion.in_parts(&mut |part, is_finest| {
             let polynomial = Polynomial { of: *part, series: reaction_series::over(part), extents };
@@ -226,18 +227,15 @@ impl Validity {
             }
             self.see_reactions(part.time(0.0), phase, &polynomial.reactions(0.0));
             self.see_reactions(part.time(arc.reach), phase, &last);
-            OF_REACTIONS.iter().filter(|of| (of.holds_in)(phase)).for_each(|of| self.look_for(of, &polynomial));
+            for of in OF_REACTIONS.iter().filter(|of| (of.holds_in)(phase)) {
+                self.search(of, &polynomial);
+                let beyond = (of.worse)(self.scale(), (ASSUMPTIONS[of.place].limit)(&self.limits));
+                for (start, end) in polynomial.above(beyond) {
+                    self.found.see_beyond(of.place, part.time(start), (end - start) * arc.span);
+                }
+            }
             true
         });
-    }
-
-    /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<Q: Coordinates>(&mut self, of: &OfReactions, polynomial: &Polynomial<Q>) {
-        self.search(of, polynomial);
-        let beyond = (of.worse)(self.scale(), (ASSUMPTIONS[of.place].limit)(&self.limits));
-        for (start, end) in polynomial.above(beyond) {
-            self.found.see_beyond(of.place, polynomial.of.time(start), (end - start) * polynomial.of.arc.span);
-        }
     }
 
     /// Looks for the worst value of an assumption within `polynomial`.
@@ -265,21 +263,43 @@ impl Validity {
             }
         }
     }
+}
 
-    /// Sees that `piece` passes, whatever its reactions are.
-    fn see_passing<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
+impl<Q: Coordinates> Watch<Q> for Validity {
+    fn piece(&mut self, piece: &Piece<Q>) {
+        let phase = piece.before.phase;
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
-        if piece.load.is_vertical() && (PRESSED_EDGE.holds_in)(piece.before.phase) {
+        if piece.load.is_vertical() && (PRESSED_EDGE.holds_in)(phase) {
             let g = self.structure.base().g;
             self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
         } else {
             self.found.see(WEIGHT, 1.0, piece.before.time);
         }
+        if !(NO_SLIDING.holds_in)(phase) {
+            return;
+        }
+        let (mut arcs, mut count) = (piece.arcs(), 0);
+        loop {
+            if arcs.left.and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
+                break;
+            }
+            let Some(expansion) = arcs.next() else { break };
+            let is_passed = reaction_series::bounds(&expansion).is_some_and(|bounds| !self.may_matter(phase, &bounds));
+            if !is_passed {
+                let extents = extents(&expansion);
+                if self.may_matter(phase, &extents) {
+                    self.look(&expansion, &extents);
+                }
+            }
+            count += 1;
+            if count >= MOST_ARCS {
+                arcs.skip_middle();
+            }
+        }
     }
 
-    /// Sees a `transition`.
-    fn see_transition<Q: Coordinates>(&mut self, transition: &Transition<Q>) {
+    fn transition(&mut self, transition: &Transition<Q>) {
         let &Transition { time, kind, before, after } = transition;
         let structure = &self.structure;
         let (side, phase) = match kind {
@@ -316,38 +336,6 @@ impl Validity {
                 self.found.see_beyond(which, time, 1.0);
             }
         }
-    }
-}
-
-impl<Q: Coordinates> Watch<Q> for Validity {
-    fn piece(&mut self, piece: &Piece<Q>) {
-        self.see_passing(piece);
-        let phase = piece.before.phase;
-        if !(NO_SLIDING.holds_in)(phase) {
-            return;
-        }
-        let (mut arcs, mut count) = (piece.arcs(), 0);
-        loop {
-            if arcs.left.and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
-                break;
-            }
-            let Some(expansion) = arcs.next() else { break };
-            let is_passed = reaction_series::bounds(&expansion).is_some_and(|bounds| !self.may_matter(phase, &bounds));
-            if !is_passed {
-                let extents = extents(&expansion);
-                if self.may_matter(phase, &extents) {
-                    self.look(&expansion, &extents);
-                }
-            }
-            count += 1;
-            if count >= MOST_ARCS {
-                arcs.skip_middle();
-            }
-        }
-    }
-
-    fn transition(&mut self, transition: &Transition<Q>) {
-        self.see_transition(transition);
     }
 }
 
