@@ -51,14 +51,13 @@ impl Detail {
     ) -> Result<Box<dyn Level>, Refused> {
         let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
-        let subject = LevelSubject { structure, local_error, is_tied, detail: self };
+        let subject = LevelSubject { structure, local_error, is_tied, detail: self, first: RefCell::default() };
         let contact = ExactContact::new(Oscillator { omega: one.omega_fc, zeta: one.parameters().zeta_fc });
-        let first = RefCell::default();
         Ok(match self {
             Detail::Auto | Detail::Nonlinear | Detail::FixedBase => {
                 let contact = (self != Detail::Nonlinear).then_some(contact);
                 let rocking = NonlinearRocking::new(one, is_tied);
-                Box::new(Elastic { subject, one, contact, rocking, first })
+                Box::new(Elastic { subject, one, contact, rocking })
             }
             Detail::Linear if is_tied => Box::new(ManyModes::<f64>::new(subject)),
             Detail::Modal if is_tied => {
@@ -70,7 +69,7 @@ impl Detail {
             Detail::Linear | Detail::Modal => {
                 let rocking =
                     if self == Detail::Linear { LinearRocking::new(&one) } else { LinearRocking::modal(&one) };
-                Box::new(Elastic { subject, one, contact: Some(contact), rocking, first })
+                Box::new(Elastic { subject, one, contact: Some(contact), rocking })
             }
             Detail::Rigid => {
                 let structure = subject.structure.shown_rigid();
@@ -100,7 +99,7 @@ impl Detail {
         })?;
         let structure = structure.moved_at(self);
         let is_tied = structure.base().is_restrained() || is_vertical;
-        let subject = LevelSubject { structure, local_error, is_tied, detail: self };
+        let subject = LevelSubject { structure, local_error, is_tied, detail: self, first: RefCell::default() };
         match self {
             _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject))),
             _ if subject.structure.modes().len() <= 1 => Ok(Box::new(OnGround::<f64>::new(subject))),
@@ -116,7 +115,6 @@ pub(crate) struct Elastic<Rocking> {
     pub one: OneMass,
     pub contact: Option<ExactContact>,
     pub rocking: Rocking,
-    first: RefCell<Box<Arc>>,
 }
 
 impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking> {
@@ -166,10 +164,6 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
 
     fn is_singular(&self, phase: Phase, state: &State) -> bool {
         matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(side, state))
-    }
-
-    fn first(&self) -> &RefCell<Box<Arc>> {
-        &self.first
     }
 
     #[inline(always)]

@@ -66,7 +66,7 @@ impl<Q: Coordinates> Rules<Q> {
 
     /// At the reach of `step`, the dissipators if it moves them, and how far points have settled for good if one yields.
     #[inline]
-    pub(crate) fn moved(&self, subject: &LevelSubject, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
+    pub(crate) fn moved(&self, subject: &LevelSubject<Q>, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
         let is_restrained = subject.is_tied && subject.structure.base().is_restrained();
         let PressedPoints { yields, friction, .. } = step.contact;
         let moves = is_restrained || yields != 0 || friction.sign() != 0.0;

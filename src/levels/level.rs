@@ -18,7 +18,7 @@ use std::fmt::{self, Debug};
 
 /// The structure that a level moves, and how it is moved.
 #[derive(Clone, Debug)]
-pub(crate) struct LevelSubject {
+pub(crate) struct LevelSubject<Q = f64> {
     pub structure: Structure,
     /// Truncation error that a step may have.
     pub local_error: f64,
@@ -26,12 +26,14 @@ pub(crate) struct LevelSubject {
     pub is_tied: bool,
     /// The level of detail, with the angles at which the ties elongate.
     pub detail: Detail,
+    /// Room for a series of which only the first terms count.
+    pub first: RefCell<Box<Arc<Q>>>,
 }
 
-impl LevelSubject {
+impl<Q: Coordinates> LevelSubject<Q> {
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
-    pub(crate) fn start<'a, Q: Coordinates>(
+    pub(crate) fn start<'a>(
         &self,
         state: State<Q>,
         (dissipators, settled): Kept<'a>,
@@ -47,7 +49,7 @@ impl LevelSubject {
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
 pub trait Level<Q: Coordinates = f64>: Send + Any {
-    fn subject(&self) -> &LevelSubject;
+    fn subject(&self) -> &LevelSubject<Q>;
 
     /// The same level again.
     fn boxed(&self) -> Box<dyn Level<Q>>;
@@ -114,12 +116,9 @@ pub trait Level<Q: Coordinates = f64>: Send + Any {
         if phase.properties().is_down { State { theta: 0.0, theta_dot: 0.0, ..state } } else { state }
     }
 
-    /// Room for a series of which only the first terms count.
-    fn first(&self) -> &RefCell<Box<Arc<Q>>>;
-
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
     fn accelerations(&self, phase: Phase, (state, load): (&State<Q>, Load<Q>), kept: Kept) -> Second<f64, Q> {
-        let [second] = derivatives(self, phase, (state, kept, load.into()), &mut self.first().borrow_mut());
+        let [second] = derivatives(self, phase, (state, kept, load.into()), &mut self.subject().first.borrow_mut());
         second
     }
 }
@@ -133,7 +132,7 @@ impl<Q: Coordinates> Debug for dyn Level<Q> + '_ {
 /// The part of `reactions` that the edges of the base carry at the instant `x`: all of it, unless the structure is restrained.
 pub(crate) fn edges<N: Angle, Q: Lateral<N>>(
     x: &Instant<N, Q>,
-    &LevelSubject { is_tied, detail, .. }: &LevelSubject,
+    &LevelSubject { is_tied, detail, .. }: &LevelSubject<Q::Of>,
     dissipators: &Dissipators,
     reactions: Reactions<N>,
 ) -> Reactions<N> {

@@ -36,7 +36,7 @@ use wide::f64x4;
 /// Motion of a base with modes.
 #[derive(Clone, Debug)]
 pub(crate) struct ManyModes<Q: Coordinates> {
-    subject: LevelSubject,
+    subject: LevelSubject<Q>,
     pub base: Base,
     modes: Vec<Mode>,
     /// Mass (kg) and height (m) of a top mass that turns rigidly with the base.
@@ -53,8 +53,6 @@ pub(crate) struct ManyModes<Q: Coordinates> {
     /// The longest span of a series while rocking, s.
     longest_span: f64,
     scratch: RefCell<Box<Scratch>>,
-    /// Room for the series of which only the first terms count.
-    first: RefCell<Box<Arc<Q>>>,
 }
 
 /// Room for the series of one step.
@@ -238,7 +236,7 @@ impl<V: Abreast> ModeGroup<V> {
 
 impl<Q: Coordinates> ManyModes<Q> {
     /// The structure of `subject`; at the level `rigid` the one mass turns rigidly with the base.
-    pub(crate) fn new(subject: LevelSubject) -> ManyModes<Q> {
+    pub(crate) fn new(subject: LevelSubject<Q>) -> ManyModes<Q> {
         let (structure, detail) = (&subject.structure, subject.detail);
         let (mut base, mut modes, mut vibration) = (*structure.base(), Q::modes(structure), structure.vibration());
         let mut rigid = None;
@@ -268,7 +266,6 @@ impl<Q: Coordinates> ManyModes<Q> {
                 factors: [[NO_ROW; MAX_ORDER + 1]; 2],
                 square: [f64x4::ZERO; MAX_ORDER + 1],
             })),
-            first: RefCell::default(),
             modes,
             subject,
             base,
@@ -523,7 +520,7 @@ impl<Q: Coordinates> ManyModes<Q> {
 }
 
 impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
-    fn subject(&self) -> &LevelSubject {
+    fn subject(&self) -> &LevelSubject<Q> {
         &self.subject
     }
 
@@ -553,10 +550,6 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
             }
             Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) => self.resting(start, arc),
         }
-    }
-
-    fn first(&self) -> &RefCell<Box<Arc<Q>>> {
-        &self.first
     }
 
     fn is_singular(&self, phase: Phase, state: &State<Q>) -> bool {
@@ -590,7 +583,8 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
-        ManyModes::new(LevelSubject { structure: frame.clone(), local_error: 1e-16, is_tied: true, detail })
+        let (structure, first) = (frame.clone(), RefCell::default());
+        ManyModes::new(LevelSubject { structure, local_error: 1e-16, is_tied: true, detail, first })
     }
 
     /// The distance from uplift is the larger of what (M3) misses and of −s D θ̈, by the equations of rocking, under all loads.

@@ -9,8 +9,7 @@ use fastrand::Rng;
 use rocking::engine::Settings;
 use rocking::run::residual::Residual;
 use rocking::{
-    Dissipators, Engine, Friction, Ground, Modes, Output, Parameters, Side, State, Structure, Transition,
-    TransitionKind,
+    Dissipators, Engine, Friction, Ground, Modes, Output, Parameters, Side, State, Transition, TransitionKind,
 };
 use std::collections::HashMap;
 
