@@ -314,15 +314,6 @@ impl<Q: Coordinates> Engine<Q> {
         Engine { kind, level, structure, settings, motion, arc: Arc::default(), room: LeapRoom::default() }
     }
 
-    /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
-    fn derivatives(&self, load: LinearLoad<Q>) -> [Second<f64, Q>; 2] {
-        let Engine { level, motion: motion @ Motion { phase, state, .. }, .. } = self;
-        if phase.properties().is_over {
-            return [Second { u_ddot: Q::each(level.structure(), |_, _| 0.0), theta_ddot: 0.0 }; 2];
-        }
-        derivatives(&**level, *phase, (state, motion.kept(), load), &mut Arc::default())
-    }
-
     /// The same structure in the same motion, with other `settings`.
     pub fn remade(&self, settings: Settings) -> Result<Engine<Q>, Refused> {
         let level = settings.level(self.kind, self.structure.clone(), self.motion.state.theta)?;
@@ -348,14 +339,19 @@ impl<Q: Coordinates> Engine<Q> {
     /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
     /// just after the transition.
     pub fn rates(&self, load: LinearLoad<Q>) -> Rates<'_, Q> {
-        let Motion { phase, state, .. } = &self.motion;
-        let [second, third] = self.derivatives(load);
+        let (Motion { phase, state, .. }, kept) = (&self.motion, self.motion.kept());
+        let is_over = phase.properties().is_over;
+        let none = Second { u_ddot: Q::each(self.structure(), |_, _| 0.0), theta_ddot: 0.0 };
+        let [second, third] = match is_over {
+            true => [none; 2],
+            false => derivatives(&*self.level, *phase, (state, kept, load), &mut Arc::default()),
+        };
         let state = self.level.admissible(*phase, *state);
         let x = Instant::moving(self.structure(), *phase, &state, &second, load);
-        let x = Instant { settled: self.motion.kept().1, ..x };
+        let x = Instant { settled: kept.1, ..x };
         let u_ddot = Duals { value: second.u_ddot, rate: third.u_ddot };
         let theta_ddot = Dual { value: second.theta_ddot, rate: third.theta_ddot };
-        Rates { x, second: Second { u_ddot, theta_ddot }, is_over: phase.properties().is_over }
+        Rates { x, second: Second { u_ddot, theta_ddot }, is_over }
     }
 
     /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.

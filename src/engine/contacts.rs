@@ -248,23 +248,19 @@ impl<Q: Coordinates> Guard<Q> for Tied {
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
-        (1, tied_margins(now).fold(f64::INFINITY, f64::min) + BAND)
+        let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
+        let Ties { P_0, k_t, k_d, F_y, .. } = structure.base().ties;
+        let (ground, y_s) = (structure.ground(), structure.ground().y_s);
+        let of = |i: usize, xi: f64| [state.u, state.u_dot][i].footing(ground).height(xi);
+        let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
+        let of_tendon = (of(0, 0.0) - y_s + P_0 / k_t) / y_s.abs() * sign;
+        let of_pair = places(structure.base()).into_iter().enumerate().map(|(j, xi)| match dissipators.yields[j] {
+            0 => 1.0 - (k_d * (of(0, xi) - y_s - dissipators.plastic[j])).abs() / F_y,
+            sign => f64::from(sign) * of(1, xi) / (y_s.abs() * structure.vibration().contact),
+        });
+        let margins = Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(|_| F_y > 0.0));
+        (1, margins.fold(f64::INFINITY, f64::min) + BAND)
     }
-}
-
-/// How far the ties are from their next change, of order one.
-fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = f64> + 'a {
-    let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
-    let Ties { P_0, k_t, k_d, F_y, .. } = structure.base().ties;
-    let (ground, y_s) = (structure.ground(), structure.ground().y_s);
-    let of = move |i: usize, xi: f64| [state.u, state.u_dot][i].footing(ground).height(xi);
-    let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
-    let of_tendon = (of(0, 0.0) - y_s + P_0 / k_t) / y_s.abs() * sign;
-    let of_pair = places(structure.base()).into_iter().enumerate().map(move |(j, xi)| match dissipators.yields[j] {
-        0 => 1.0 - (k_d * (of(0, xi) - y_s - dissipators.plastic[j])).abs() / F_y,
-        sign => f64::from(sign) * of(1, xi) / (y_s.abs() * structure.vibration().contact),
-    });
-    Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
 }
 
 /// The dissipators at the reach of a step, and what friction has taken there.

@@ -107,7 +107,7 @@ pub struct Assumption {
 macro_rules! assumptions {
     ($($place:ident $name:literal $description:literal, $meaning:literal,
         $passing:ident $limit:expr, $start:expr, $impacts:expr;)*) => {
-        #[allow(clippy::upper_case_acronyms)] // as the places
+        #[allow(non_camel_case_types, clippy::upper_case_acronyms)] // as the places
         enum Places {
             $($place),*
         }
