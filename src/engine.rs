@@ -159,15 +159,11 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The truncation error that a step may have.
-    fn local_error(&self) -> Result<f64, Refused> {
-        check_tolerance(self.tolerance)?;
-        Ok((LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR))
-    }
-
     /// The level of detail at which `structure` moves that is turned by `theta` (rad).
     fn level<Q: Coordinates>(self, kind: &Kind<Q>, structure: Structure, theta: f64) -> LevelOrNot<Q> {
-        let level = (kind.level)(self.detail, structure, self.local_error()?, self.vertical)?;
+        check_tolerance(self.tolerance)?;
+        let local_error = (LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
+        let level = (kind.level)(self.detail, structure, local_error, self.vertical)?;
         ensure(self.detail.has_uplift() || theta == 0.0, || {
             format!(
                 "theta_0 = {theta:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0"
@@ -296,7 +292,7 @@ impl<Q: Coordinates> Engine<Q> {
         phase: Phase,
     ) -> Engine<Q> {
         let subject = level.subject();
-        let (base, chord) = (subject.structure.base(), subject.angles.chord(state.theta, 0.0).length);
+        let (base, chord) = (subject.structure.base(), subject.detail.angles().chord(state.theta, 0.0).length);
         let moved = Dissipators::NEW.moved_to(base, |j| levers(base, phase.side())[j] * chord);
         let motion = Motion {
             time,
@@ -316,15 +312,6 @@ impl<Q: Coordinates> Engine<Q> {
     fn of(kind: &'static Kind<Q>, level: Box<dyn Level<Q>>, settings: Settings, motion: Motion<Q>) -> Engine<Q> {
         let structure = level.structure().clone();
         Engine { kind, level, structure, settings, motion, arc: Arc::default(), room: LeapRoom::default() }
-    }
-
-    /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
-    fn derivatives(&self, load: LinearLoad<Q>) -> [Second<f64, Q>; 2] {
-        let Engine { level, motion: motion @ Motion { phase, state, .. }, .. } = self;
-        if phase.properties().is_over {
-            return [Second { u_ddot: Q::each(level.structure(), |_, _| 0.0), theta_ddot: 0.0 }; 2];
-        }
-        derivatives(&**level, *phase, (state, motion.kept(), load), &mut Arc::default())
     }
 
     /// The same structure in the same motion, with other `settings`.
@@ -352,14 +339,19 @@ impl<Q: Coordinates> Engine<Q> {
     /// Time derivatives now under `load`, from the equations of motion; 0 once overturned. The derivatives at a transition are taken
     /// just after the transition.
     pub fn rates(&self, load: LinearLoad<Q>) -> Rates<'_, Q> {
-        let Motion { phase, state, .. } = &self.motion;
-        let [second, third] = self.derivatives(load);
+        let (Motion { phase, state, .. }, kept) = (&self.motion, self.motion.kept());
+        let is_over = phase.properties().is_over;
+        let none = Second { u_ddot: Q::each(self.structure(), |_, _| 0.0), theta_ddot: 0.0 };
+        let [second, third] = match is_over {
+            true => [none; 2],
+            false => derivatives(&*self.level, *phase, (state, kept, load), &mut Arc::default()),
+        };
         let state = self.level.admissible(*phase, *state);
         let x = Instant::moving(self.structure(), *phase, &state, &second, load);
-        let x = Instant { settled: self.motion.kept().1, ..x };
+        let x = Instant { settled: kept.1, ..x };
         let u_ddot = Duals { value: second.u_ddot, rate: third.u_ddot };
         let theta_ddot = Dual { value: second.theta_ddot, rate: third.theta_ddot };
-        Rates { x, second: Second { u_ddot, theta_ddot }, is_over: phase.properties().is_over }
+        Rates { x, second: Second { u_ddot, theta_ddot }, is_over }
     }
 
     /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
@@ -368,7 +360,7 @@ impl<Q: Coordinates> Engine<Q> {
         if phase.properties().is_over {
             return Restraints::default();
         }
-        let (second, angles) = (self.sample(load).second(), self.level.subject().angles);
+        let (second, angles) = (self.sample(load).second(), self.level.subject().detail.angles());
         let x = Instant::moving(self.structure(), *phase, state, &second, load.into());
         let Restraints { P_t, F_d1, F_d2 } = restraints(&x, angles, dissipators);
         Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
@@ -502,13 +494,12 @@ impl<Q: Coordinates> Engine<Q> {
     ) -> Result<Progress, AdvanceError> {
         let Engine { level, motion, arc, room, settings: Settings { stops, .. }, .. } = self;
         let (level, stops) = (&**level, *stops);
-        let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
         let expand = |phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>| {
             level.series(phase, start, arc);
             true
         };
         let mut advance = Advance::new(level.structure(), motion.time, interval, load, last_step);
-        let progress = Loop { level, phases, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
+        let progress = Loop { level, expand, arc, room, stops }.go(motion, before, &mut advance, watch)?;
         Ok(progress.expect("every series is there"))
     }
 
@@ -661,10 +652,8 @@ impl<Q: Coordinates> Advance<Q> {
 }
 
 /// The loop over the steps of one advance.
-struct Loop<'a, Q: Coordinates, P, E> {
+struct Loop<'a, Q: Coordinates, E> {
     level: &'a dyn Level<Q>,
-    /// Gives the phase of a motion; none where the motion is over.
-    phases: P,
     /// Writes the series of a step, or says that the series is not there yet.
     expand: E,
     /// The step.
@@ -674,12 +663,7 @@ struct Loop<'a, Q: Coordinates, P, E> {
     stops: bool,
 }
 
-impl<Q, P, E> Loop<'_, Q, P, E>
-where
-    Q: Coordinates,
-    P: Fn(&Motion<Q>) -> Option<&'static Rules<Q>>,
-    E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool,
-{
+impl<Q: Coordinates, E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool> Loop<'_, Q, E> {
     /// Goes on with `advance` step by step: expands the motion, finds the first guard that closes, applies its transition. A long
     /// interval is taken in parts, each twice as long as the one before, until the rest is one leap. The motion `before` the first
     /// change is kept: an advance that fails changes nothing. Returns none where a series is not there yet.
@@ -697,7 +681,7 @@ where
         let Start { a_g, a_top, a_v, local_error, .. } =
             level.subject().start(motion.state, motion.kept(), load, interval);
         loop {
-            let Some(watched) = (self.phases)(motion) else { return Ok(Some(Progress::Overturned)) };
+            let Some(watched) = phases::of(level.structure(), motion) else { return Ok(Some(Progress::Overturned)) };
             let Advance { elapsed, part, .. } = advance;
             if elapsed >= interval {
                 return Ok(Some(Progress::Complete));
@@ -805,39 +789,7 @@ pub(crate) fn first<Q: Coordinates>(watched: &Rules<Q>, step: &mut Step<Q>) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::first_crossing::{Gap, first_time_all_closed};
-    use crate::{OneMass, Parameters, TransitionKind};
-    use approx::assert_relative_eq;
-    use guard::Guard;
-    use std::f64::consts::PI;
-    use step::Branch;
-
-    /// Amplitude of the vibration, m.
-    const AMPLITUDE: f64 = 1e-3;
-
-    /// A wall at half the amplitude, from which the top mass bounces.
-    struct Wall;
-
-    impl Guard for Wall {
-        fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Branch) {
-            let is_there = Gap::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
-            let moves_on = Gap::new(arc.used(&arc.u_dot), -1.0, 0.0);
-            (first_time_all_closed([is_there, moves_on], reach), Branch::default())
-        }
-
-        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _branch: Branch) -> Option<TransitionKind> {
-            motion.state.u_dot *= -1.0;
-            Some(TransitionKind::Landing)
-        }
-
-        fn stays_open(&self, _now: &Sample, _ahead: f64) -> bool {
-            false
-        }
-
-        fn indicator(&self, _now: &Sample) -> (usize, f64) {
-            (0, 1.0)
-        }
-    }
+    use crate::{OneMass, Parameters};
 
     /// Truncation below rounding would be work without an effect.
     #[test]
@@ -846,31 +798,5 @@ mod tests {
         let of =
             |tolerance| Engine::new(structure, State::default(), 0.0, tolerance).unwrap().level.subject().local_error;
         assert_eq!([1e-15, 1e-9, 0.1].map(of), [0.5 * f64::EPSILON, LOCAL_SHARE * 1e-9, LARGEST_LOCAL_ERROR]);
-    }
-
-    /// Vibration without damping between the wall and its far end takes 2/3 of a period.
-    #[test]
-    fn a_new_phase_is_one_more_list_of_guards() {
-        static WALLED: Rules = Rules { guards: &[&Wall], ..Rules::RESTING };
-        let structure = OneMass::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
-        let settings = Settings { detail: Detail::Nonlinear, tolerance: 1e-12, ..Settings::default() };
-        let released = State { u: -AMPLITUDE, ..State::default() };
-        let mut engine = Engine::with(structure, released, 0.0, settings).unwrap();
-        let Engine { level, motion, arc, room, .. } = &mut engine;
-        let mut bounces = Vec::new();
-        let mut watch = |transition: &Transition| bounces.push(transition.time);
-        let expand = |phase: Phase, start: &Start, arc: &mut Arc| {
-            level.series(phase, start, arc);
-            true
-        };
-        let interval = 9.0 * PI / structure.omega_fc;
-        let mut advance = Advance::new(&structure.into(), 0.0, interval, LinearLoad::default(), u64::MAX);
-        Loop { level: &**level, phases: |_: &Motion| Some(&WALLED), expand, arc, room, stops: false }
-            .go(motion, &mut None, &mut advance, &mut watch)
-            .unwrap();
-        assert_eq!(bounces.len(), 7);
-        for (k, time) in bounces.into_iter().enumerate() {
-            assert_relative_eq!(time * structure.omega_fc, (2 * k + 1) as f64 * 2.0 * PI / 3.0, max_relative = 1e-10);
-        }
     }
 }

@@ -26,7 +26,7 @@ pub(crate) mod start;
 pub mod uplift;
 
 use crate::levels::full_contact::ExactContact;
-use crate::levels::level::{ElasticRocking, FixedBase, Level, LevelSubject, most_of_swings};
+use crate::levels::level::{ElasticRocking, Level, LevelSubject, most_of_swings};
 use crate::levels::linear::LinearRocking;
 use crate::levels::modes::ManyModes;
 use crate::levels::nonlinear::NonlinearRocking;
@@ -51,16 +51,15 @@ impl Detail {
     ) -> Result<Box<dyn Level>, Refused> {
         let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
-        let subject = LevelSubject { structure, local_error, is_tied, angles: self.angles() };
+        let subject = LevelSubject { structure, local_error, is_tied, detail: self, first: RefCell::default() };
         let contact = ExactContact::new(Oscillator { omega: one.omega_fc, zeta: one.parameters().zeta_fc });
-        let first = RefCell::default();
         Ok(match self {
-            Detail::Auto | Detail::Nonlinear => {
-                let contact = (self == Detail::Auto).then_some(contact);
+            Detail::Auto | Detail::Nonlinear | Detail::FixedBase => {
+                let contact = (self != Detail::Nonlinear).then_some(contact);
                 let rocking = NonlinearRocking::new(one, is_tied);
-                Box::new(Elastic { subject, one, contact, rocking, first })
+                Box::new(Elastic { subject, one, contact, rocking })
             }
-            Detail::Linear if is_tied => Box::new(ManyModes::<f64>::new(subject, self)),
+            Detail::Linear if is_tied => Box::new(ManyModes::<f64>::new(subject)),
             Detail::Modal if is_tied => {
                 return Err(Refused::by(
                     "detail = modal has no modes of a structure that is restrained or shaken vertically, whose equations change with \
@@ -70,13 +69,12 @@ impl Detail {
             Detail::Linear | Detail::Modal => {
                 let rocking =
                     if self == Detail::Linear { LinearRocking::new(&one) } else { LinearRocking::modal(&one) };
-                Box::new(Elastic { subject, one, contact: Some(contact), rocking, first })
+                Box::new(Elastic { subject, one, contact: Some(contact), rocking })
             }
             Detail::Rigid => {
                 let structure = subject.structure.shown_rigid();
-                Box::new(ManyModes::<f64>::new(LevelSubject { structure, ..subject }, self))
+                Box::new(ManyModes::<f64>::new(LevelSubject { structure, ..subject }))
             }
-            Detail::FixedBase => Box::new(Elastic { subject, one, contact: Some(contact), rocking: FixedBase, first }),
         })
     }
 
@@ -101,9 +99,9 @@ impl Detail {
         })?;
         let structure = structure.moved_at(self);
         let is_tied = structure.base().is_restrained() || is_vertical;
-        let subject = LevelSubject { structure, local_error, is_tied, angles: self.angles() };
+        let subject = LevelSubject { structure, local_error, is_tied, detail: self, first: RefCell::default() };
         match self {
-            _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject, self))),
+            _ if subject.structure.foundation().is_none() => Ok(Box::new(ManyModes::<Modes>::new(subject))),
             _ if subject.structure.modes().len() <= 1 => Ok(Box::new(OnGround::<f64>::new(subject))),
             _ => Ok(Box::new(OnGround::<f64x4>::new(subject))),
         }
@@ -117,7 +115,6 @@ pub(crate) struct Elastic<Rocking> {
     pub one: OneMass,
     pub contact: Option<ExactContact>,
     pub rocking: Rocking,
-    first: RefCell<Box<Arc>>,
 }
 
 impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking> {
@@ -171,14 +168,10 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
         matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(side, state))
     }
 
-    fn first(&self) -> &RefCell<Box<Arc>> {
-        &self.first
-    }
-
     #[inline(always)]
     fn liftable(&self) -> Option<Liftable<'_>> {
-        let has_constant_inertia = self.subject.angles == Angles::Small;
-        Rocking::IS_POSSIBLE.then(|| Liftable::of_one(&self.one, self.rocking.lean(), has_constant_inertia))
+        let detail = self.subject.detail;
+        detail.has_uplift().then(|| Liftable::of_one(&self.one, self.rocking.lean(), detail.angles() == Angles::Small))
     }
 }
 

@@ -98,36 +98,30 @@ impl Real for f64 {
     its_own! { abs max(other) min(other) sqrt }
 }
 
+/// Implements an operator of a number for these operands, and their result.
+macro_rules! operator {
+    ([$($parameters:tt)*] $number:ty: $trait:ident<$other:ty>, $name:ident, |$own:ident, $with:ident| $result:expr) => {
+        impl<$($parameters)*> std::ops::$trait<$other> for $number {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, $with: $other) -> Self {
+                let $own = self;
+                $result
+            }
+        }
+    };
+}
+
 /// Implements the operators of a number by its methods `plus`, `times` and `map`. The method `map` applies a linear function
 /// to each part.
 macro_rules! operators {
     ([$($parameters:tt)*] $number:ty) => {
-        impl<$($parameters)*> std::ops::Add for $number {
-            type Output = Self;
-
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                self.plus(&other)
-            }
-        }
-
-        impl<$($parameters)*> std::ops::Sub for $number {
-            type Output = Self;
-
-            #[inline(always)]
-            fn sub(self, other: Self) -> Self {
-                self.plus(&-other)
-            }
-        }
-
-        impl<$($parameters)*> std::ops::Mul for $number {
-            type Output = Self;
-
-            #[inline(always)]
-            fn mul(self, other: Self) -> Self {
-                self.times(&other)
-            }
-        }
+        operator!([$($parameters)*] $number: Add<Self>, add, |own, other| own.plus(&other));
+        operator!([$($parameters)*] $number: Sub<Self>, sub, |own, other| own.plus(&-other));
+        operator!([$($parameters)*] $number: Mul<Self>, mul, |own, other| own.times(&other));
+        operator!([$($parameters)*] $number: Mul<f64>, mul, |own, factor| own.map(|part| part * factor));
+        operator!([$($parameters)*] $number: Div<f64>, div, |own, divisor| own.map(|part| part / divisor));
 
         impl<$($parameters)*> std::ops::Neg for $number {
             type Output = Self;
@@ -137,27 +131,9 @@ macro_rules! operators {
                 self.map(|part| -part)
             }
         }
-
-        impl<$($parameters)*> std::ops::Mul<f64> for $number {
-            type Output = Self;
-
-            #[inline(always)]
-            fn mul(self, factor: f64) -> Self {
-                self.map(|part| part * factor)
-            }
-        }
-
-        impl<$($parameters)*> std::ops::Div<f64> for $number {
-            type Output = Self;
-
-            #[inline(always)]
-            fn div(self, divisor: f64) -> Self {
-                self.map(|part| part / divisor)
-            }
-        }
     };
 }
-pub(crate) use operators;
+pub(crate) use {operator, operators};
 
 /// Sine, cosine and versine of the rotation.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,7 @@ use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
 use crate::engine::step::{Branch, Step, see};
 use crate::engine::transition::TransitionKind;
-use crate::engine::yielding::{product_integral, square_integral};
+use crate::engine::yielding::product_integral;
 use crate::levels::level::Level;
 use crate::levels::on_ground::Pushes;
 use crate::levels::start::Start;
@@ -53,13 +53,7 @@ impl Rises {
         rises
     }
 
-    /// The height over the step at ξ plus τ times its rate, and what counts as 0 of it.
-    #[inline]
-    fn at(&self, xi: f64, tau: f64) -> (Series, f64) {
-        self.above(0.0, xi, tau)
-    }
-
-    /// The same with `more` height.
+    /// The height over the step at ξ with `more` height, plus τ times its rate, and what counts as 0 of it.
     #[inline]
     fn above(&self, more: f64, xi: f64, tau: f64) -> (Series, f64) {
         let Rises { y, sin, order, scale, .. } = self;
@@ -216,7 +210,7 @@ impl<Q: Coordinates> Guard<Q> for Tied {
         }
         let rises = Rises::new(level, arc);
         if k_t > 0.0 {
-            let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.y_s);
+            let ((height, rounding), slack) = (rises.above(0.0, 0.0, 0.0), P_0 / k_t - foundation.y_s);
             let (opens, sign) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
             let gap = Gap::new(&height[..=rises.order], opens, opens * slack + rounding);
             see(&mut found, first_time_all_closed([gap], reach), usize::from(TENDON), sign);
@@ -226,7 +220,7 @@ impl<Q: Coordinates> Guard<Q> for Tied {
             match start.dissipators.yields[j] {
                 0 => {
                     for sign in [1_i8, -1] {
-                        let mut height = rises.at(xi, 0.0);
+                        let mut height = rises.above(0.0, xi, 0.0);
                         height.0[0] -= foundation.y_s + start.dissipators.plastic[j] + f64::from(sign) * F_y / k_d;
                         height.1 += ROUNDING * F_y / k_d;
                         let gaps = [&height, &rate].map(|of| rises.gap(of, -f64::from(sign)));
@@ -254,32 +248,31 @@ impl<Q: Coordinates> Guard<Q> for Tied {
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
-        (1, tied_margins(now).fold(f64::INFINITY, f64::min) + BAND)
+        let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
+        let Ties { P_0, k_t, k_d, F_y, .. } = structure.base().ties;
+        let (ground, y_s) = (structure.ground(), structure.ground().y_s);
+        let of = |i: usize, xi: f64| [state.u, state.u_dot][i].footing(ground).height(xi);
+        let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
+        let of_tendon = (of(0, 0.0) - y_s + P_0 / k_t) / y_s.abs() * sign;
+        let of_pair = places(structure.base()).into_iter().enumerate().map(|(j, xi)| match dissipators.yields[j] {
+            0 => 1.0 - (k_d * (of(0, xi) - y_s - dissipators.plastic[j])).abs() / F_y,
+            sign => f64::from(sign) * of(1, xi) / (y_s.abs() * structure.vibration().contact),
+        });
+        let margins = Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(|_| F_y > 0.0));
+        (1, margins.fold(f64::INFINITY, f64::min) + BAND)
     }
-}
-
-/// How far the ties are from their next change, of order one.
-fn tied_margins<'a, Q: Coordinates>(now: &'a Sample<Q>) -> impl Iterator<Item = f64> + 'a {
-    let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
-    let Ties { P_0, k_t, k_d, F_y, .. } = structure.base().ties;
-    let (ground, y_s) = (structure.ground(), structure.ground().y_s);
-    let of = move |i: usize, xi: f64| [state.u, state.u_dot][i].footing(ground).height(xi);
-    let sign = if phase.contact().is_slack { -1.0 } else { 1.0 };
-    let of_tendon = (of(0, 0.0) - y_s + P_0 / k_t) / y_s.abs() * sign;
-    let of_pair = places(structure.base()).into_iter().enumerate().map(move |(j, xi)| match dissipators.yields[j] {
-        0 => 1.0 - (k_d * (of(0, xi) - y_s - dissipators.plastic[j])).abs() / F_y,
-        sign => f64::from(sign) * of(1, xi) / (y_s.abs() * structure.vibration().contact),
-    });
-    Some(of_tendon).filter(|_| k_t > 0.0).into_iter().chain(of_pair.filter(move |_| F_y > 0.0))
 }
 
 /// The dissipators at the reach of a step, and what friction has taken there.
 pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
     let &Step { level, contact, start, arc, reach, .. } = step;
     let (ground, mut moved) = (level.structure().ground(), *start.dissipators);
-    let end = || Q::evaluate(arc.used(&arc.u), reach);
-    if level.structure().base().is_restrained() {
-        moved = stretched(step);
+    let (base, end) = (level.structure().base(), || Q::evaluate(arc.used(&arc.u), reach));
+    if base.is_restrained() {
+        let rises = Rises::new(level, arc);
+        let of = |j: usize| evaluate(&rises.above(0.0, places(base)[j], 0.0).0[..=arc.order], reach) - ground.y_s;
+        let power = |(c, rate): (f64, Terms)| c * arc.span * product_integral(rate.used(), rate.used(), reach);
+        moved = start.dissipators.stepped(base, of, dampers_on_ground(base, arc, ground).map(power));
     }
     if let (Friction::Slides(side), Some(mu_c), Some(place)) = (contact.friction, ground.mu_c, ground.slide()) {
         let rate: Series = std::array::from_fn(|k| arc.u_dot[k].of(place));
@@ -314,13 +307,6 @@ pub(super) fn settled<Q: Coordinates>(&Step { level, contact, start, arc, reach,
         settled.as_mut()[i] = crept - end.height(point.xi);
     }
     settled
-}
-
-fn stretched<Q: Coordinates>(&Step { level, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
-    let (foundation, base, rises) = (level.structure().ground(), level.structure().base(), Rises::new(level, arc));
-    let height = |j: usize| evaluate(&rises.at(places(base)[j], 0.0).0[..=arc.order], reach) - foundation.y_s;
-    let power = |(c, rate): (f64, Terms)| c * arc.span * square_integral(rate.used(), reach);
-    start.dissipators.stepped(base, height, dampers_on_ground(base, arc, foundation).map(power))
 }
 
 /// The normal force of the points over a step, N.

@@ -22,26 +22,12 @@ use crate::{Base, Foundation, Friction, Output, Phase, PressedPoints, Side, Stat
 /// The base, which may slide, sticks, slides or flies.
 pub(crate) struct Sliding;
 
-impl Sliding {
-    /// The number of `friction` in a branch.
-    const fn sign(friction: Friction) -> i8 {
-        match friction {
-            Friction::Sticks => 0,
-            Friction::Slides(Side::Left) => -1,
-            Friction::Slides(Side::Right) => 1,
-            Friction::Free => 2,
-        }
-    }
+/// The frictions, each at its number in a branch.
+const FRICTIONS: [Friction; 4] =
+    [Friction::Sticks, Friction::Slides(Side::Left), Friction::Slides(Side::Right), Friction::Free];
 
-    /// The friction of the number.
-    const fn of(sign: i8) -> Friction {
-        match sign {
-            0 => Friction::Sticks,
-            -1 => Friction::Slides(Side::Left),
-            1 => Friction::Slides(Side::Right),
-            _ => Friction::Free,
-        }
-    }
+fn number(friction: Friction) -> i8 {
+    FRICTIONS.iter().position(|of| *of == friction).expect("it is one of them") as i8
 }
 
 /// The friction that a base needs to stick over a step, N: R_h = m_t a_g − Σ F + (S_1 sin θ + μ cos θ)¨ (S2).
@@ -175,7 +161,7 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
         if reach < 0.0 {
             return none;
         }
-        let becomes = |crossing, friction| (crossing, Branch { which: 0, sign: Sliding::sign(friction) });
+        let becomes = |crossing, friction| (crossing, Branch { which: 0, sign: number(friction) });
         let (is_free, x_dot) = (contact.pressed == 0, start.state.u_dot.slide(ground).unwrap_or(0.0));
         match contact.friction {
             Friction::Free if is_free => none,
@@ -194,7 +180,7 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
                     let gap = (std::array::from_fn(|k| mu_c * normal[k] - sign * needed[k]), rounding);
                     // the last two orders of R_h are not known
                     let gap = opened(&gap, 1.0, arc.order.saturating_sub(2), part);
-                    let sign = Sliding::sign(Friction::Slides(slides));
+                    let sign = number(Friction::Slides(slides));
                     let crossing = first([gap], found.0.sigma().min(reach));
                     see(&mut found, crossing, usize::from(crossing == Crossing::At(0.0)), sign);
                 }
@@ -218,7 +204,7 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
 
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind> {
         let Phase::OnGround(contact) = &mut motion.phase else { return None };
-        let (before, after) = (contact.friction, Sliding::of(branch.sign));
+        let (before, after) = (contact.friction, *FRICTIONS.get(branch.sign as usize)?);
         contact.friction = after;
         // the friction from the start on is no change of it
         if branch.which == 1 && motion.transitions == 0 && motion.work.steps <= 1 {

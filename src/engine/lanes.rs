@@ -10,7 +10,6 @@ pub(crate) mod sought;
 
 use super::{Advance, AdvanceError, Engine, Loop, MAX_STEPS_PER_ADVANCE, Progress, Settings};
 use crate::engine::motion::Motion;
-use crate::engine::phases;
 use crate::engine::piece::{Piece, Watch};
 use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
@@ -103,8 +102,7 @@ impl<Q: Coordinates> Engine<Q> {
             }
             true
         };
-        let phases = |motion: &Motion<Q>| phases::of::<Q>(level.structure(), motion);
-        Loop { level, phases, expand, arc, room, stops: *at_transitions }.go(motion, &mut None, advance, watch)
+        Loop { level, expand, arc, room, stops: *at_transitions }.go(motion, &mut None, advance, watch)
     }
 
     /// Takes the step of `advance` that was taken in `lane` of `steps`, and goes on like [`Engine::go_on`] to the next step of rocking.

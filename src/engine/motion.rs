@@ -1,10 +1,8 @@
 //! Everything about a structure that changes with time, in a few dozen numbers.
 
 use crate::engine::step::Closed;
-use crate::levels::level::Now;
 use crate::mechanics::impact::Chatter;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
 use crate::mechanics::restraint::{Dissipators, Kept};
 use crate::{Phase, Side, State};
@@ -45,12 +43,6 @@ pub struct Motion<Q: Coordinates = f64> {
 }
 
 impl<Q: Coordinates> Motion<Q> {
-    /// The motion under `load`.
-    #[inline]
-    pub(crate) fn under(&self, load: Load<Q>) -> Now<'_, Q> {
-        Now { state: &self.state, load, kept: self.kept() }
-    }
-
     /// What it keeps beside the state.
     #[inline]
     pub(crate) fn kept(&self) -> Kept<'_> {

@@ -66,7 +66,7 @@ impl<Q: Coordinates> Rules<Q> {
 
     /// At the reach of `step`, the dissipators if it moves them, and how far points have settled for good if one yields.
     #[inline]
-    pub(crate) fn moved(&self, subject: &LevelSubject, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
+    pub(crate) fn moved(&self, subject: &LevelSubject<Q>, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
         let is_restrained = subject.is_tied && subject.structure.base().is_restrained();
         let PressedPoints { yields, friction, .. } = step.contact;
         let moves = is_restrained || yields != 0 || friction.sign() != 0.0;
@@ -117,13 +117,17 @@ impl<Q: Coordinates> Guard<Q> for Uplift {
     }
 
     fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
-        (0, now.level.uplift_margin(&now.motion.under(now.load)).0 + BAND)
+        (0, uplift_margin(now).0 + BAND)
     }
 
     fn closed(&self, now: &Sample<Q>) -> Option<Branch> {
-        let (margin, side) = now.level.uplift_margin(&now.motion.under(now.load));
+        let (margin, side) = uplift_margin(now);
         (margin <= 0.0).then_some(about(side))
     }
+}
+
+fn uplift_margin<Q: Coordinates>(Sample { motion, load, level }: &Sample<Q>) -> (f64, Side) {
+    level.uplift_margin(&motion.state, *load, &motion.dissipators)
 }
 
 fn about(side: Side) -> Branch {

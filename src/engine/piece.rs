@@ -5,7 +5,7 @@
 
 use crate::engine::motion::Motion;
 use crate::engine::phases;
-use crate::engine::sample::{Sample, edges_of, shown};
+use crate::engine::sample::{Sample, shown};
 use crate::engine::step::Step;
 use crate::engine::transition::Transition;
 use crate::levels::level::{Level, off_chord};
@@ -97,18 +97,12 @@ pub struct Piece<'a, Q: Coordinates = f64> {
 }
 
 /// The part of an engine that watchers use when they ask for the polynomials of a leap.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct LeapRoom<Q> {
     /// Polynomials that they may still ask for.
     pub left: Cell<u64>,
     /// The polynomial that they asked for last.
     arc: RefCell<Option<Box<Arc<Q>>>>,
-}
-
-impl<Q> Default for LeapRoom<Q> {
-    fn default() -> LeapRoom<Q> {
-        LeapRoom { left: Cell::new(0), arc: RefCell::new(None) }
-    }
 }
 
 impl<'p, Q: Coordinates> Piece<'p, Q> {
@@ -131,7 +125,8 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
 
     /// What the edges of the base carry in `state`, `tau` seconds after the start of the piece.
     pub(crate) fn edges(&self, tau: f64, state: &State<Q>) -> Reactions {
-        edges_of(self.level, self.before.phase, (state, self.load.at(tau)), self.before.kept())
+        let motion = Motion { state: *state, ..*self.before };
+        Sample { motion, load: self.load.at(tau), level: self.level }.edges()
     }
 
     /// The state `tau` seconds after the start of the piece.
@@ -157,8 +152,12 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
         self.end
     }
 
-    /// The motion at `time`, `tau` seconds after the start of the piece.
-    fn motion_at(&self, time: f64, tau: f64) -> Motion<Q> {
+    /// The motion at `time` (s), which lies within the piece.
+    pub fn sample(&self, time: f64) -> Sample<'_, Q> {
+        let end = self.before.time + self.duration;
+        // an instant that misses the end by the clock's rounding is the end
+        let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
+        let tau = if is_before { time - self.before.time } else { self.duration };
         let mut motion = Motion { time, state: self.state_at(tau), ..*self.before };
         if let Some((watched, arc)) = phases::of::<Q>(self.level.structure(), self.before).zip(self.arc) {
             let (level, side, contact) = (self.level, self.before.phase.side(), self.before.phase.contact());
@@ -168,16 +167,7 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
             motion.dissipators = moved.unwrap_or(motion.dissipators);
             motion.settled = settled.unwrap_or(motion.settled);
         }
-        motion
-    }
-
-    /// The motion at `time` (s), which lies within the piece.
-    pub fn sample(&self, time: f64) -> Sample<'_, Q> {
-        let end = self.before.time + self.duration;
-        // an instant that misses the end by the clock's rounding is the end
-        let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
-        let tau = if is_before { time - self.before.time } else { self.duration };
-        Sample { motion: self.motion_at(time, tau), load: self.load.at(tau), level: self.level }
+        Sample { motion, load: self.load.at(tau), level: self.level }
     }
 }
 
@@ -242,7 +232,7 @@ impl<'a, Q: Coordinates> PiecePart<'a, Q> {
 pub(crate) struct Arcs<'a, Q: Coordinates = f64> {
     /// Start of the part, s after the start of the piece.
     begin: f64,
-    left: Option<PiecePart<'a, Q>>,
+    pub left: Option<PiecePart<'a, Q>>,
     /// Of a leap: the polynomial in hand.
     arc: Option<Box<Arc<Q>>>,
     room: &'a LeapRoom<Q>,
@@ -281,11 +271,6 @@ impl<Q: Coordinates> Drop for Arcs<'_, Q> {
 }
 
 impl<'a, Q: Coordinates> Arcs<'a, Q> {
-    /// The part that is left.
-    pub(crate) fn left(&self) -> Option<PiecePart<'a, Q>> {
-        self.left
-    }
-
     /// Leaves out the middle of what is left of a long leap of one mode.
     ///
     /// The motion in full contact is a line and a decaying vibration about the line. The magnitudes of the line and of the

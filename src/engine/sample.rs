@@ -1,7 +1,7 @@
 //! A motion at one instant.
 
 use crate::engine::motion::Motion;
-use crate::levels::level::{Level, Now, edges};
+use crate::levels::level::{Level, edges};
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
@@ -23,7 +23,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
     /// ü and θ̈; once overturned, those of the instant before.
     pub(crate) fn second(&self) -> Second<f64, Q> {
         let Sample { motion, load, level } = self;
-        level.accelerations(motion.phase.in_motion(level.structure()), &motion.under(*load))
+        level.accelerations(motion.phase.in_motion(level.structure()), (&motion.state, *load), motion.kept())
     }
 
     /// The structure at the instant, without θ̈.
@@ -43,12 +43,12 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
     pub fn edges(&self) -> Reactions {
-        edges_of(self.level, self.motion.phase, (&self.motion.state, self.load), self.motion.kept())
+        edges(&self.instant(), self.level.subject(), &self.motion.dissipators, self.reactions())
     }
 
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
-        restraints(&self.instant(), self.level.subject().angles, &self.motion.dissipators)
+        restraints(&self.instant(), self.level.subject().detail.angles(), &self.motion.dissipators)
     }
 
     /// The value of `output`; once overturned, the value of the instant before.
@@ -77,19 +77,6 @@ impl<Q: Coordinates> Sample<'_, Q> {
     }
 }
 
-/// The part of the reactions that the edges of the base of `level` carry, as [`Sample::edges`].
-pub(crate) fn edges_of<Q: Coordinates>(
-    level: &dyn Level<Q>,
-    phase: Phase,
-    (state, load): (&State<Q>, Load<Q>),
-    kept: Kept,
-) -> Reactions {
-    let phase = phase.in_motion(level.structure());
-    let x = Instant::of(level.structure(), phase, state, load);
-    let second = level.accelerations(phase, &Now { state, load, kept });
-    edges(&x, level.subject(), kept.0, Reactions::at(&x, &second))
-}
-
 /// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
 #[inline]
 pub(crate) fn shown<'a, Q: Coordinates>(
@@ -103,5 +90,5 @@ pub(crate) fn shown<'a, Q: Coordinates>(
     if !structure.gauges().has_feedthrough {
         return x;
     }
-    x.accelerated(&level.accelerations(phase, &Now { state, load, kept }))
+    x.accelerated(&level.accelerations(phase, (state, load), kept))
 }

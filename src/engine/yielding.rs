@@ -40,7 +40,9 @@ impl<Q: Coordinates> Guard<Q> for Yielding {
                 0 => {
                     for sign in [1_i8, -1] {
                         let elongation = dissipators.plastic[j] + f64::from(sign) * F_y / k_d;
-                        let Some(theta) = level.subject().angles.rotation(elongation / lever) else { continue };
+                        let Some(theta) = level.subject().detail.angles().rotation(elongation / lever) else {
+                            continue;
+                        };
                         let towards = (f64::from(sign) * lever).signum();
                         let is_at_contact = theta.abs() <= AT_CONTACT * (F_y / (k_d * lever)).abs();
                         if is_at_contact && towards != side.sign() {
@@ -87,7 +89,7 @@ fn moving(base: &Base, side: Side) -> impl Iterator<Item = (usize, f64)> {
 /// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
 fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
     let (base, Motion { phase, state, dissipators, .. }) = (now.level.structure().base(), &now.motion);
-    let (side, angles) = (phase.side(), now.level.subject().angles);
+    let (side, angles) = (phase.side(), now.level.subject().detail.angles());
     let Ties { k_d, F_y, .. } = base.ties;
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
@@ -102,15 +104,10 @@ fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
 
 /// The dissipators at the reach of a step.
 pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
-    let (base, angles) = (level.structure().base(), level.subject().angles);
+    let (base, angles) = (level.structure().base(), level.subject().detail.angles());
     let chord = || angles.chord(evaluate(arc.used(&arc.theta), reach), 0.0).length;
-    let power = |(c, rate): (f64, Terms)| c * (square_integral(rate.used(), reach) * arc.span);
+    let power = |(c, rate): (f64, Terms)| c * (product_integral(rate.used(), rate.used(), reach) * arc.span);
     start.dissipators.stepped(base, |j| levers(base, side)[j] * chord(), dampers(base, angles, arc).map(power))
-}
-
-/// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.
-pub(super) fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
-    product_integral(coefficients, coefficients, reach)
 }
 
 /// ∫ (Σ a_k σᵏ) (Σ b_k σᵏ) dσ from 0 to `reach`.

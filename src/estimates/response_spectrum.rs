@@ -25,7 +25,7 @@ use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
 use crate::run::{End, Run, RunError, Runs};
 use crate::series::extremes::{self, OFF_CHORD};
-use crate::series::taylor::{Series, ZERO, series};
+use crate::series::taylor::{Series, ZERO, each_order, series};
 use crate::structure::quantity::{Quantity, Refused};
 use std::array;
 use std::f64::consts::{PI, TAU};
@@ -44,14 +44,7 @@ const LONGEST: f64 = 2.1;
 const ORDERS: [(f64, usize); 7] = [(0.028, 7), (0.09, 9), (0.2, 11), (0.36, 13), (0.85, 17), (1.5, 21), (LONGEST, 24)];
 
 /// −1/((k+1) (k+2)) for each order k.
-const SHARES: Series = {
-    let (mut shares, mut k) = (ZERO, 0);
-    while k < shares.len() {
-        shares[k] = -1.0 / ((k + 1) * (k + 2)) as f64;
-        k += 1;
-    }
-    shares
-};
+const SHARES: Series = each_order!(k from 0: -1.0 / ((k + 1) * (k + 2)) as f64);
 
 /// Oscillators under the same acceleration, from rest.
 #[derive(Clone, Debug)]

@@ -1,5 +1,6 @@
 //! A level of detail as the engine uses it: equations, uplift, and exact leaps where there are any.
 
+use crate::levels::detail::Detail;
 use crate::levels::full_contact::{self, ExactContact};
 use crate::levels::start::{MIN_ORDER, Start};
 use crate::levels::uplift::Liftable;
@@ -8,37 +9,31 @@ use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::reactions::Reactions;
-use crate::mechanics::restraint::{Angles, Dissipators, Kept, pulls};
+use crate::mechanics::restraint::{Dissipators, Kept, pulls};
 use crate::numbers::{Angle, Real};
 use crate::{Phase, Side, State, Structure};
 use std::any::Any;
 use std::cell::RefCell;
 use std::fmt::{self, Debug};
 
-/// A structure at one instant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Now<'a, Q = f64> {
-    pub state: &'a State<Q>,
-    pub load: Load<Q>,
-    pub kept: Kept<'a>,
-}
-
 /// The structure that a level moves, and how it is moved.
 #[derive(Clone, Debug)]
-pub(crate) struct LevelSubject {
+pub(crate) struct LevelSubject<Q = f64> {
     pub structure: Structure,
     /// Truncation error that a step may have.
     pub local_error: f64,
     /// Whether the structure is restrained or shaken vertically: its equations of rocking then have more terms.
     pub is_tied: bool,
-    /// The angles at which the ties elongate.
-    pub angles: Angles,
+    /// The level of detail, with the angles at which the ties elongate.
+    pub detail: Detail,
+    /// Room for a series of which only the first terms count.
+    pub first: RefCell<Box<Arc<Q>>>,
 }
 
-impl LevelSubject {
+impl<Q: Coordinates> LevelSubject<Q> {
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
-    pub(crate) fn start<'a, Q: Coordinates>(
+    pub(crate) fn start<'a>(
         &self,
         state: State<Q>,
         (dissipators, settled): Kept<'a>,
@@ -54,7 +49,7 @@ impl LevelSubject {
 /// [liftable](Level::liftable) structure has a fixed base.
 #[allow(private_interfaces)] // the coordinates name the trait, and nobody else can use it
 pub trait Level<Q: Coordinates = f64>: Send + Any {
-    fn subject(&self) -> &LevelSubject;
+    fn subject(&self) -> &LevelSubject<Q>;
 
     /// The same level again.
     fn boxed(&self) -> Box<dyn Level<Q>>;
@@ -106,7 +101,7 @@ pub trait Level<Q: Coordinates = f64>: Send + Any {
     }
 
     /// Distance of a structure in full contact from uplift, and its side, as in [`Liftable::margin`].
-    fn uplift_margin(&self, &Now { state, load, kept: (dissipators, _) }: &Now<Q>) -> (f64, Side) {
+    fn uplift_margin(&self, state: &State<Q>, load: Load<Q>, dissipators: &Dissipators) -> (f64, Side) {
         let a_top = load.on_modes(self.structure());
         self.liftable().map_or((1.0, Side::Right), |of| of.margin(state, [load.a_g, load.a_v], &a_top, dissipators))
     }
@@ -121,12 +116,9 @@ pub trait Level<Q: Coordinates = f64>: Send + Any {
         if phase.properties().is_down { State { theta: 0.0, theta_dot: 0.0, ..state } } else { state }
     }
 
-    /// Room for a series of which only the first terms count.
-    fn first(&self) -> &RefCell<Box<Arc<Q>>>;
-
     /// ü and θ̈ in `phase`, m/s² and rad/s²; not finite where the equations have no solution.
-    fn accelerations(&self, phase: Phase, &Now { state, load, kept }: &Now<Q>) -> Second<f64, Q> {
-        let [second] = derivatives(self, phase, (state, kept, load.into()), &mut self.first().borrow_mut());
+    fn accelerations(&self, phase: Phase, (state, load): (&State<Q>, Load<Q>), kept: Kept) -> Second<f64, Q> {
+        let [second] = derivatives(self, phase, (state, kept, load.into()), &mut self.subject().first.borrow_mut());
         second
     }
 }
@@ -140,14 +132,14 @@ impl<Q: Coordinates> Debug for dyn Level<Q> + '_ {
 /// The part of `reactions` that the edges of the base carry at the instant `x`: all of it, unless the structure is restrained.
 pub(crate) fn edges<N: Angle, Q: Lateral<N>>(
     x: &Instant<N, Q>,
-    &LevelSubject { is_tied, angles, .. }: &LevelSubject,
+    &LevelSubject { is_tied, detail, .. }: &LevelSubject<Q::Of>,
     dissipators: &Dissipators,
     reactions: Reactions<N>,
 ) -> Reactions<N> {
     if !is_tied {
         return reactions;
     }
-    let [up, right, moment] = pulls(x, angles, dissipators);
+    let [up, right, moment] = pulls(x, detail.angles(), dissipators);
     Reactions { R_h: reactions.R_h - right, R_v: reactions.R_v + up, R_m: reactions.R_m + moment }
 }
 
@@ -204,9 +196,6 @@ pub(crate) fn derivatives<Q: Coordinates, const K: usize>(
 
 /// Equations of rocking with an elastic strut.
 pub(crate) trait ElasticRocking {
-    /// Whether the base can lift off.
-    const IS_POSSIBLE: bool = true;
-
     fn leap(&self, _side: Side, _start: &Start) -> Option<State> {
         None
     }
@@ -226,14 +215,4 @@ pub(crate) trait ElasticRocking {
     fn lean(&self) -> f64 {
         1.0
     }
-}
-
-/// A base that never rocks.
-#[derive(Clone, Debug)]
-pub(crate) struct FixedBase;
-
-impl ElasticRocking for FixedBase {
-    const IS_POSSIBLE: bool = false;
-
-    fn series(&self, _side: Side, _start: &Start, _arc: &mut Arc) {}
 }

@@ -36,8 +36,7 @@ use wide::f64x4;
 /// Motion of a base with modes.
 #[derive(Clone, Debug)]
 pub(crate) struct ManyModes<Q: Coordinates> {
-    subject: LevelSubject,
-    detail: Detail,
+    subject: LevelSubject<Q>,
     pub base: Base,
     modes: Vec<Mode>,
     /// Mass (kg) and height (m) of a top mass that turns rigidly with the base.
@@ -54,8 +53,6 @@ pub(crate) struct ManyModes<Q: Coordinates> {
     /// The longest span of a series while rocking, s.
     longest_span: f64,
     scratch: RefCell<Box<Scratch>>,
-    /// Room for the series of which only the first terms count.
-    first: RefCell<Box<Arc<Q>>>,
 }
 
 /// Room for the series of one step.
@@ -238,9 +235,9 @@ impl<V: Abreast> ModeGroup<V> {
 }
 
 impl<Q: Coordinates> ManyModes<Q> {
-    /// The structure of `subject` at a level of this `detail`; at the level `rigid` the one mass turns rigidly with the base.
-    pub(crate) fn new(subject: LevelSubject, detail: Detail) -> ManyModes<Q> {
-        let structure = &subject.structure;
+    /// The structure of `subject`; at the level `rigid` the one mass turns rigidly with the base.
+    pub(crate) fn new(subject: LevelSubject<Q>) -> ManyModes<Q> {
+        let (structure, detail) = (&subject.structure, subject.detail);
         let (mut base, mut modes, mut vibration) = (*structure.base(), Q::modes(structure), structure.vibration());
         let mut rigid = None;
         if let (Detail::Rigid, &[Mode { mass: m, height: H, .. }]) = (detail, modes) {
@@ -269,10 +266,8 @@ impl<Q: Coordinates> ManyModes<Q> {
                 factors: [[NO_ROW; MAX_ORDER + 1]; 2],
                 square: [f64x4::ZERO; MAX_ORDER + 1],
             })),
-            first: RefCell::default(),
             modes,
             subject,
-            detail,
             base,
             rigid,
             vibration,
@@ -287,7 +282,7 @@ impl<Q: Coordinates> ManyModes<Q> {
     /// The structure as far as uplift depends on it.
     fn standing(&self) -> Liftable<'_> {
         let ManyModes { base, modes, rigid, .. } = self;
-        let has_constant_inertia = self.subject.angles == Angles::Small;
+        let has_constant_inertia = self.subject.detail.angles() == Angles::Small;
         Liftable { base, modes, rigid: *rigid, lean: 1.0, has_constant_inertia }
     }
 
@@ -466,8 +461,9 @@ impl<Q: Coordinates> ManyModes<Q> {
 
     /// The moment of the ties about `side` as a series, if there are ties.
     fn ties(&self, side: Side, start: &Start<Q>) -> Option<MomentSeries> {
-        let &LevelSubject { is_tied, angles, .. } = &self.subject;
-        is_tied.then(|| Restraint::about(&self.base, side, start.dissipators).series(angles, start.state.theta))
+        let &LevelSubject { is_tied, detail, .. } = &self.subject;
+        is_tied
+            .then(|| Restraint::about(&self.base, side, start.dissipators).series(detail.angles(), start.state.theta))
     }
 
     /// Writes the motion while rocking about `side` by small angles into `arc`. From (M10) and (M11), with e = (c u̇ + k u)/μ,
@@ -524,7 +520,7 @@ impl<Q: Coordinates> ManyModes<Q> {
 }
 
 impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
-    fn subject(&self) -> &LevelSubject {
+    fn subject(&self) -> &LevelSubject<Q> {
         &self.subject
     }
 
@@ -544,7 +540,7 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 
     fn series(&self, phase: Phase, start: &Start<Q>, arc: &mut Arc<Q>) {
         match phase {
-            Phase::Rocking(side) if self.detail == Detail::Linear => self.rocking_little(side, start, arc),
+            Phase::Rocking(side) if self.subject.detail == Detail::Linear => self.rocking_little(side, start, arc),
             Phase::Rocking(side) if self.is_rigid() => self.rocking_rigidly(side, start, arc),
             Phase::Rocking(side) => self.rocking(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) | Phase::OnGround(_) if self.is_rigid() => {
@@ -556,18 +552,14 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
         }
     }
 
-    fn first(&self) -> &RefCell<Box<Arc<Q>>> {
-        &self.first
-    }
-
     fn is_singular(&self, phase: Phase, state: &State<Q>) -> bool {
         let (&Base { m_t, J0, B, .. }, Phase::Rocking(side)) = (&self.base, phase) else { return false };
         let inertia = || inertia(&self.base, &self.modes, side, |j| state.u.of(j));
-        self.detail != Detail::Linear && inertia() < LEAST_INERTIA * (J0 + m_t * B * B)
+        self.subject.detail != Detail::Linear && inertia() < LEAST_INERTIA * (J0 + m_t * B * B)
     }
 
     fn liftable(&self) -> Option<Liftable<'_>> {
-        (self.detail != Detail::FixedBase).then(|| self.standing())
+        (self.subject.detail != Detail::FixedBase).then(|| self.standing())
     }
 
     fn admissible(&self, phase: Phase, state: State<Q>) -> State<Q> {
@@ -579,7 +571,6 @@ impl<Q: Coordinates> Level<Q> for ManyModes<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::levels::level::Now;
     use crate::mechanics::instant::Instant;
     use crate::mechanics::lateral::Lateral;
     use crate::mechanics::load::Load;
@@ -592,8 +583,8 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn level(frame: &Structure, detail: Detail) -> ManyModes<Modes> {
-        let angles = detail.angles();
-        ManyModes::new(LevelSubject { structure: frame.clone(), local_error: 1e-16, is_tied: true, angles }, detail)
+        let (structure, first) = (frame.clone(), RefCell::default());
+        ManyModes::new(LevelSubject { structure, local_error: 1e-16, is_tied: true, detail, first })
     }
 
     /// The distance from uplift is the larger of what (M3) misses and of −s D θ̈, by the equations of rocking, under all loads.
@@ -610,17 +601,17 @@ mod tests {
             let [u, u_dot] = [[2.5, -1.5], [200.0, 50.0]].map(|of| Modes::new(&of.map(|it| scale * it)));
             let state = State { u, u_dot, theta: 0.0, theta_dot: 0.0 };
             let load = Load { a_g: 0.7, F_t: Modes { rest: [6e4, -9e4], ..Modes::new(&[90.0, 50.0]) }, a_v };
-            let now = Now { state: &state, load, kept: (&dissipators, &[0.0; MOST_POINTS]) };
+            let kept = (&dissipators, &[0.0; MOST_POINTS]);
             let springs = Modes::sum(&frame, |j, mode| mode.height * mode.stiffness * u.of(j)) - S_res * load.a_g - 9e4;
             let expected = [Side::Right, Side::Left].map(|side| {
                 let residual = |(xi, e_p): (f64, f64)| -1e7 * e_p * (side.sign() * B - xi);
                 let residual: f64 = [(0.5, 2e-3), (-0.5, -1e-3)].map(residual).iter().sum();
                 let held = m_t * (g + a_v) * B + 2e5 * B + side.sign() * residual;
                 let inertia = inertia(frame.base(), frame.modes(), side, |j| u.of(j));
-                let turns = level.accelerations(Phase::Rocking(side), &now).theta_ddot * inertia;
+                let turns = level.accelerations(Phase::Rocking(side), (&state, load), kept).theta_ddot * inertia;
                 ((held - side.sign() * springs) / weight).max(-side.sign() * turns / weight)
             });
-            let (found, side) = level.uplift_margin(&now);
+            let (found, side) = level.uplift_margin(&state, load, &dissipators);
             let least = if side == Side::Right { expected[0] } else { expected[1] };
             assert_relative_eq!(found, least, max_relative = 1e-9);
             assert!(found <= expected[0].min(expected[1]) + 1e-9, "{found} {expected:?}");
@@ -648,8 +639,7 @@ mod tests {
         for (phase, state) in
             [(Phase::Rocking(Side::Left), turned), (Phase::FullContact, State { theta: 0.0, theta_dot: 0.0, ..turned })]
         {
-            let now = Now { state: &state, load, kept: (&Dissipators::NEW, &[0.0; MOST_POINTS]) };
-            let second = level.accelerations(phase, &now);
+            let second = level.accelerations(phase, (&state, load), (&Dissipators::NEW, &[0.0; MOST_POINTS]));
             let x = Instant::<f64, Modes>::of(&frame, phase, &state, load);
             let Instant { turn, theta_dot, a_g, a_v, s, .. } = x;
             let x = Instant { theta_ddot: second.theta_ddot, ..x };

@@ -38,7 +38,7 @@ const AT_REST: f64 = 0.9;
 /// A structure on ground that gives.
 #[derive(Clone, Debug)]
 pub(crate) struct OnGround<V: Abreast> {
-    pub(super) subject: LevelSubject,
+    pub(super) subject: LevelSubject<Modes>,
     /// The longest span of a series, and of one of a base that slides, s.
     longest_span: f64,
     pub(super) longest_slide: f64,
@@ -50,8 +50,6 @@ pub(crate) struct OnGround<V: Abreast> {
     /// Bounds over √(2E) at an energy E (J) above rest: of the horizontal force that the modes need, and of how the normal force changes.
     swings: [f64; 2],
     scratch: RefCell<Box<GroundScratch<V>>>,
-    /// Room for the series of which only the first terms count.
-    first: RefCell<Box<Arc<Modes>>>,
 }
 
 /// The forces of the pressed points and of ties on the base as functions of its motion.
@@ -99,7 +97,7 @@ impl Pushes {
     }
 
     /// These with the ties of `subject`.
-    pub fn with_ties(self, subject: &LevelSubject, start: &Start<Modes>, contact: PressedPoints) -> Pushes {
+    pub fn with_ties(self, subject: &LevelSubject<Modes>, start: &Start<Modes>, contact: PressedPoints) -> Pushes {
         let Pushes { mut push, mut k, mut c, .. } = self;
         if !subject.is_tied {
             return self;
@@ -164,7 +162,7 @@ struct GroundScratch<V: Abreast> {
 
 impl<V: Abreast> OnGround<V> {
     /// The structure of `subject`, which stands on ground that gives.
-    pub(crate) fn new(subject: LevelSubject) -> OnGround<V> {
+    pub(crate) fn new(subject: LevelSubject<Modes>) -> OnGround<V> {
         let structure = &subject.structure;
         let (base, body, modes) = (structure.base(), structure.body(), structure.modes());
         let foundation = structure.ground();
@@ -188,7 +186,6 @@ impl<V: Abreast> OnGround<V> {
                 pushed: [0.0; MAX_ORDER + 1],
                 square: [V::default(); MAX_ORDER + 1],
             })),
-            first: RefCell::default(),
             subject,
         }
     }
@@ -349,7 +346,7 @@ impl<V: Abreast> OnGround<V> {
 
 impl<V: Abreast> Level<Modes> for OnGround<V> {
     #[inline(always)]
-    fn subject(&self) -> &LevelSubject {
+    fn subject(&self) -> &LevelSubject<Modes> {
         &self.subject
     }
 
@@ -367,10 +364,6 @@ impl<V: Abreast> Level<Modes> for OnGround<V> {
             Friction::Sticks => self.motion(contact, start, arc),
             Friction::Slides(_) | Friction::Free => self.slide(contact, start, arc),
         }
-    }
-
-    fn first(&self) -> &RefCell<Box<Arc<Modes>>> {
-        &self.first
     }
 
     /// `state` with the sine of its rotation.

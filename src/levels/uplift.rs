@@ -71,7 +71,7 @@ impl<'a> Liftable<'a> {
     /// The structure of one mass.
     #[inline(always)]
     pub(crate) fn of_one(one: &'a OneMass, lean: f64, has_constant_inertia: bool) -> Liftable<'a> {
-        let modes = std::slice::from_ref(one.mode());
+        let modes = std::slice::from_ref(&one.mode);
         Liftable { base: one.base(), modes, rigid: None, lean, has_constant_inertia }
     }
 

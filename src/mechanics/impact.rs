@@ -21,10 +21,7 @@
 //! many in finite time, which end in contact; neither specimen comes near them. A rigid structure, which has no vibration
 //! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
 
-use crate::mechanics::energy::kinetic;
-use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::load::Load;
 use crate::{Base, Mode, OneMass, Phase, Side, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -146,11 +143,6 @@ pub fn energy_gained<Q: Coordinates>(structure: &Structure, side: Side, before: 
     sum(&|j, mode| -(1.0 - r) * mode.mass * mode.height * u_dot.of(j)) * theta_dot
         - 0.5 * (1.0 - r * r) * inertia * square
         + sum(&|j, mode| 2.0 * r * r * mode.gamma * B * s * u.of(j)) * square
-}
-
-/// Kinetic energy T₋ in the state `before`, which ends rocking about `side`, J.
-pub(crate) fn kinetic_energy<Q: Coordinates>(structure: &Structure, side: Side, before: &State<Q>) -> f64 {
-    kinetic(&Instant::of(structure, Phase::Rocking(side), before, Load::NONE))
 }
 
 /// A = J0 + m (H² + u²) and F = (m + m0) B², kg·m²: J₋ is A + F − 2 m B s u.

@@ -350,7 +350,7 @@ impl Coordinates for Modes {
         let mut rest = [0.0; 2];
         for ((force, floor), gauge) in forces.zip(structure.floors()).zip(&structure.gauges().a) {
             on_modes = on_modes.plus(floor.shape, force);
-            rest = std::array::from_fn(|i| rest[i] + gauge.on_rest(force)[i]);
+            rest = [0, 1].map(|i| rest[i] + force * gauge.left[1 - i]);
         }
         Modes { rest, ..on_modes }
     }

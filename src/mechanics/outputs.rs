@@ -502,6 +502,7 @@ impl Output {
     /// The output in the motion `x` on ground that gives (F1, F2).
     fn on_ground<K: Number, Q: Lateral<K>>(self, x: &Instant<K, Q>, foundation: &Foundation) -> K {
         let (points, [footing, rates]) = (&foundation.points, x.footing(foundation));
+        let same = || unreachable!("{self:?} has the same formula on all ground");
         match self {
             y => footing.y,
             E_foundation => footing.taken,
@@ -531,7 +532,8 @@ impl Output {
             N_right => N(points.len() - 1).on_ground(x, foundation),
             Output::uplift | settlement | pressure | F_d1 | F_d2 => K::constant(f64::NAN),
             slip_path | E_friction | settled | tilt | E_plastic | Output::s(_) => K::constant(f64::NAN),
-            _ => unreachable!("{self:?} has the same formula on all ground"),
+            theta | theta_dot | u(_) | u_dot(_) | drift(_) | drift_ratio(_) | delta_t(_) | v_t(_) | V_t | M_t => same(),
+            a_t(_) | V(_) | M(_) => same(),
         }
     }
 
@@ -577,31 +579,7 @@ impl Output {
             V_t | M_t | a_t(_) | V(_) | M(_) => {
                 self.gauge(x.structure).expect("a gauge measures accelerations and forces").at(x)
             }
-            Output::uplift
-            | y
-            | settlement
-            | contact
-            | E_foundation
-            | N_left
-            | N_right
-            | pressure
-            | N(_)
-            | sunk(_)
-            | lifted(_)
-            | Output::x
-            | x_dot
-            | slip_path
-            | E_friction
-            | settled
-            | tilt
-            | E_plastic
-            | Output::s(_)
-            | edge(_)
-            | P_t
-            | F_d1
-            | F_d2 => {
-                Q::foundation(x.structure).map_or(K::constant(f64::NAN), |foundation| self.on_ground(x, foundation))
-            }
+            _ => Q::foundation(x.structure).map_or(K::constant(f64::NAN), |foundation| self.on_ground(x, foundation)),
         }
     }
 }

@@ -126,18 +126,6 @@ pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Secon
     [push - along * x.turn.cos - across * x.turn.sin, weight * m_t + across * x.turn.cos - along * x.turn.sin]
 }
 
-/// The forces to the right and downwards less the `rate` of the momentum, given `along` u and across.
-#[inline(always)]
-pub(crate) fn less_momentum<N: Number>(
-    [push, weight]: [N; 2],
-    [along, across]: [N; 2],
-    turn: &Turn<N>,
-    rate: impl Fn(&N) -> N,
-) -> [N; 2] {
-    let [right, up] = [along * turn.cos + across * turn.sin, across * turn.cos - along * turn.sin];
-    [push - rate(&right), weight + rate(&up)]
-}
-
 /// R_m, N·m.
 #[inline(always)]
 pub(crate) fn moment<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {

@@ -232,8 +232,14 @@ impl<Q: Coordinates, Segments: Iterator<Item = Segment>> Follower<Q, Segments> {
             Ok(next) => next,
             Err(ending) => return Ok(Some(ending)),
         };
-        let progress = over(&mut self.engine, segment, watch).map_err(|cause| error(&self.engine, cause))?;
-        Ok(if progress == Progress::Overturned { Some(Ending::Overturned) } else { ending })
+        let load = load_of(self.engine.structure(), segment.ground);
+        let progress =
+            self.engine.advance(segment.duration, load, watch).map_err(|cause| error(&self.engine, cause))?;
+        if progress == Progress::Overturned {
+            return Ok(Some(Ending::Overturned));
+        }
+        self.engine.set_time(segment.until);
+        Ok(ending)
     }
 
     /// The next segment, and the ending of the run after that segment if the run ends there. The inner error is the ending if the run
@@ -299,21 +305,6 @@ pub(super) fn load_of<Q: Coordinates>(structure: &Structure, ground: LinearLoad)
     let on_top = |F_t| if F_t == 0.0 { Q::ZERO } else { on_top(structure, F_t) };
     let [value, slope] = [ground.value, ground.slope].map(|Load { a_g, F_t, a_v }| Load { a_g, F_t: on_top(F_t), a_v });
     LinearLoad { value, slope }
-}
-
-/// Follows a structure over `segment`.
-#[inline]
-fn over<Q: Coordinates, W: Watch<Q>>(
-    engine: &mut Engine<Q>,
-    segment: Segment,
-    watch: &mut W,
-) -> Result<Progress, AdvanceError> {
-    let load = load_of(engine.structure(), segment.ground);
-    let progress = engine.advance(segment.duration, load, watch)?;
-    if progress != Progress::Overturned {
-        engine.set_time(segment.until);
-    }
-    Ok(progress)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 mod watches;
 
 use super::course::{Ending, Finish, Follower, LONGEST_REST, MOST_STEPS, Run, RunError, Starts, error, load_of};
-use super::fall::{FallWatch, RunResult};
+use super::fall::{FallPeaks, FallWatch, RunResult};
 use super::ground_motion::{Segment, Segments};
 use super::peaks::Peaks;
 use crate::Progress;
@@ -34,30 +34,16 @@ type ShowEach<Q, T> = fn(&[Run<Q>], OnResult<T>);
 
 /// How runs are followed to their peaks, and to their rotation alone.
 pub(super) type Each<Q> =
-    (ShowEach<Q, Result<RunResult<Q>, RunError>>, ShowEach<Q, (Result<Finish<Q>, RunError>, Rocked)>);
+    (ShowEach<Q, Result<RunResult<Q>, RunError>>, ShowEach<Q, (Result<Finish<Q>, RunError>, FallPeaks)>);
 
 pub(super) fn find_each<Q: Starts>(runs: &[Run<Q>], done: OnResult<Result<RunResult<Q>, RunError>>) {
     let done = &mut |number: usize, finish, watch| done(number, found(&runs[number], finish, watch));
     Arch::new().dispatch(Following { runs, watch: Run::watch_falling, done });
 }
 
-/// The rotation of a run.
-#[derive(Clone, Copy, Debug)]
-pub struct Rocked {
-    /// The largest |θ|, rad, that of a fall included.
-    pub theta: f64,
-    /// Number of impacts and landings.
-    pub impacts: u64,
-}
-
-pub(super) fn rock_each<Q: Starts>(runs: &[Run<Q>], done: OnResult<(Result<Finish<Q>, RunError>, Rocked)>) {
-    let done = &mut |number, finish, watch| done(number, (finish, rocked(watch)));
+pub(super) fn rock_each<Q: Starts>(runs: &[Run<Q>], done: OnResult<(Result<Finish<Q>, RunError>, FallPeaks)>) {
+    let done = &mut |number, finish, watch: FallWatch<Q>| done(number, (finish, watch.end()));
     Arch::new().dispatch(Following { runs, watch: watch_rocking, done });
-}
-
-/// The rotation that `watch` has seen.
-fn rocked<Q: Starts>(watch: FallWatch<Q>) -> Rocked {
-    Rocked { impacts: watch.impacts, theta: watch.end().all().theta().magnitude }
 }
 
 /// The watcher of the peak of θ alone of `run`, before any motion.
@@ -472,11 +458,12 @@ mod tests {
             V3::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
             V4::try_new().into_iter().for_each(|simd| same(together(simd, runs)));
         }
-        rock_each(runs, &mut |number, rocked| {
-            let run = &runs[number];
+        rock_each(runs, &mut |number, (finish, rocked)| {
+            let (run, of) = (&runs[number], |of: FallPeaks| (of.all().theta(), of.impacts));
+            let found = (finish, of(rocked));
             let mut watch = watch_rocking(run);
             let finish = run.end(&mut watch).map(|(ending, engine)| Finish { ending, motion: *engine.motion() });
-            assert_eq!(format!("{rocked:?}"), format!("{:?}", (finish, super::rocked(watch))));
+            assert_eq!(format!("{found:?}"), format!("{:?}", (finish, of(watch.end()))));
             true
         });
     }

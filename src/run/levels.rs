@@ -45,14 +45,10 @@ pub enum Criterion {
 
 impl Criterion {
     /// All of them.
-    pub const ALL: [Criterion; 6] = [
-        Criterion::Theta,
-        Criterion::U,
-        Criterion::At,
-        Criterion::ThetaHistory,
-        Criterion::UHistory,
-        Criterion::AtHistory,
-    ];
+    pub const ALL: [Criterion; 6] = {
+        use Criterion::{At, AtHistory, Theta, ThetaHistory, U, UHistory};
+        [Theta, U, At, ThetaHistory, UHistory, AtHistory]
+    };
 
     /// Its name on the command line and in tables.
     pub const fn name(self) -> &'static str {

@@ -302,15 +302,8 @@ mod tests {
     #[test]
     fn scales_that_leave_no_ground_motion_are_refused() {
         let record = || Record::from_samples("pulse", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap();
-        for (time_scale, scale) in [
-            (0.0, 1.0),
-            (-1.0, 1.0),
-            (f64::NAN, 1.0),
-            (f64::INFINITY, 1.0),
-            (1e-320, 1.0),
-            (1.0, f64::NAN),
-            (1.0, 1e308),
-        ] {
+        let times = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-320].map(|time_scale| (time_scale, 1.0));
+        for (time_scale, scale) in times.into_iter().chain([f64::NAN, 1e308].map(|scale| (1.0, scale))) {
             let refused = record().scaled(time_scale, scale).unwrap_err().to_string();
             let expected = format!("time_scale = {time_scale:?} and scale = {scale:?} leave no ground motion");
             assert!(refused.starts_with(&expected), "{refused}");

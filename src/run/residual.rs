@@ -15,12 +15,7 @@ pub struct Residual {
     is_of: fn(&Foundation) -> bool,
 }
 
-const fn residual(
-    name: &'static str,
-    unit: &'static str,
-    description: &'static str,
-    is_of: fn(&Foundation) -> bool,
-) -> Residual {
+const fn residual([name, unit, description]: [&'static str; 3], is_of: fn(&Foundation) -> bool) -> Residual {
     Residual { name, unit, description, is_of }
 }
 
@@ -29,14 +24,14 @@ const YIELDS: fn(&Foundation) -> bool = |of| of.yields;
 
 /// The numbers, in the order in which they are shown.
 pub const RESIDUALS: [Residual; 8] = [
-    residual("x_end", "m", "way of the base at the end", SLIDES),
-    residual("slip_path", "m", "sum of the slips", SLIDES),
-    residual("E_friction", "J", "energy that friction has taken", SLIDES),
-    residual("theta_res", "rad", "rotation at rest on the settled ground", YIELDS),
-    residual("settlement_res", "m", "settlement at rest of the lower outer point", YIELDS),
-    residual("tilt", "rad", "rotation of the settled points", YIELDS),
-    residual("settled", "m", "mean settlement of the points for good", YIELDS),
-    residual("E_plastic", "J", "energy that settling for good has taken", YIELDS),
+    residual(["x_end", "m", "way of the base at the end"], SLIDES),
+    residual(["slip_path", "m", "sum of the slips"], SLIDES),
+    residual(["E_friction", "J", "energy that friction has taken"], SLIDES),
+    residual(["theta_res", "rad", "rotation at rest on the settled ground"], YIELDS),
+    residual(["settlement_res", "m", "settlement at rest of the lower outer point"], YIELDS),
+    residual(["tilt", "rad", "rotation of the settled points"], YIELDS),
+    residual(["settled", "m", "mean settlement of the points for good"], YIELDS),
+    residual(["E_plastic", "J", "energy that settling for good has taken"], YIELDS),
 ];
 
 impl Residual {

@@ -29,14 +29,16 @@ use crate::digits::short;
 use crate::engine::piece::{Expansion, Piece, PiecePart, Watch};
 use crate::engine::sample::Sample;
 use crate::levels::level::off_chord;
+use crate::mechanics::energy::kinetic;
 use crate::mechanics::impact;
+use crate::mechanics::instant::Instant;
 use crate::mechanics::lateral::Coordinates;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{
-    Base, Detail, Foundation, Impulse, Mode, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
+    Base, Detail, Foundation, Impulse, Load, Mode, Motion, OneMass, Output, Parameters, Phase, Ramp, Reactions, Side,
     Structure, Transition, TransitionKind,
 };
 pub use assumptions::{
@@ -208,7 +210,8 @@ impl Validity {
         })
     }
 
-    /// Looks at the motion over a polynomial; `extents` are bounds of its reactions.
+    /// Looks at the motion over a polynomial for the worst value of each assumption and for the time beyond its limit; `extents` are bounds of
+    /// its reactions.
     fn look<Q: Coordinates>(&mut self, expansion: &Expansion<Q>, extents: &Reactions<Extent>) {
         expansion.in_parts(&mut |part, is_finest| {
             let polynomial = Polynomial { of: *part, series: reaction_series::over(part), extents };
@@ -224,18 +227,15 @@ impl Validity {
             }
             self.see_reactions(part.time(0.0), phase, &polynomial.reactions(0.0));
             self.see_reactions(part.time(arc.reach), phase, &last);
-            OF_REACTIONS.iter().filter(|of| (of.holds_in)(phase)).for_each(|of| self.look_for(of, &polynomial));
+            for of in OF_REACTIONS.iter().filter(|of| (of.holds_in)(phase)) {
+                self.search(of, &polynomial);
+                let beyond = (of.worse)(self.scale(), (ASSUMPTIONS[of.place].limit)(&self.limits));
+                for (start, end) in polynomial.above(beyond) {
+                    self.found.see_beyond(of.place, part.time(start), (end - start) * arc.span);
+                }
+            }
             true
         });
-    }
-
-    /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<Q: Coordinates>(&mut self, of: &OfReactions, polynomial: &Polynomial<Q>) {
-        self.search(of, polynomial);
-        let beyond = (of.worse)(self.scale(), (ASSUMPTIONS[of.place].limit)(&self.limits));
-        for (start, end) in polynomial.above(beyond) {
-            self.found.see_beyond(of.place, polynomial.of.time(start), (end - start) * polynomial.of.arc.span);
-        }
     }
 
     /// Looks for the worst value of an assumption within `polynomial`.
@@ -263,80 +263,25 @@ impl Validity {
             }
         }
     }
+}
 
-    /// Sees that `piece` passes, whatever its reactions are.
-    fn see_passing<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
+impl<Q: Coordinates> Watch<Q> for Validity {
+    fn piece(&mut self, piece: &Piece<Q>) {
+        let phase = piece.before.phase;
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
-        if piece.load.is_vertical() && (PRESSED_EDGE.holds_in)(piece.before.phase) {
+        if piece.load.is_vertical() && (PRESSED_EDGE.holds_in)(phase) {
             let g = self.structure.base().g;
             self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
         } else {
             self.found.see(WEIGHT, 1.0, piece.before.time);
         }
-    }
-
-    /// Sees a `transition`.
-    fn see_transition<Q: Coordinates>(&mut self, transition: &Transition<Q>) {
-        let &Transition { time, kind, before, after } = transition;
-        let structure = &self.structure;
-        let (side, phase) = match kind {
-            TransitionKind::Impact(side) => (side.opposite(), Phase::Rocking(side)),
-            // s θ falls to 0
-            TransitionKind::Landing | TransitionKind::Settling => (Side::of(-before.theta_dot), Phase::FullContact),
-            TransitionKind::Uplift(_)
-            | TransitionKind::Overturning(_)
-            | TransitionKind::Yielding(_)
-            | TransitionKind::Unloading(_)
-            | TransitionKind::Touch(_)
-            | TransitionKind::Release(_)
-            | TransitionKind::Settles(_)
-            | TransitionKind::Holds(_)
-            | TransitionKind::Friction(_)
-            | TransitionKind::Taut
-            | TransitionKind::Slack => return,
-        };
-        self.found.settlings += u64::from(kind == TransitionKind::Settling);
-        let is_landing = phase.properties().is_down;
-        // the rigid limit that bounces has come to rest: what is left below the tolerance is no impact
-        let is_no_impact = match structure.is_rigid() {
-            true => impact::restitution::<Q>(structure, side, &before) > 0.0,
-            false => after != impact::land::<Q>(structure, &before),
-        };
-        if is_landing && is_no_impact {
-            return;
-        }
-        let kinetic = impact::kinetic_energy::<Q>(structure, side, &before);
-        if kinetic == 0.0 {
-            return;
-        }
-        let gained = match is_landing {
-            false => impact::energy_gained::<Q>(structure, side, &before),
-            true => 0.0, // a landing always loses
-        };
-        let impulse = Impulse::of::<Q>(structure, (Phase::Rocking(side), &before), (phase, &after));
-        self.found.impacts += 1;
-        self.found.gains += u64::from(gained / kinetic > 0.0);
-        for (which, value) in of_impact(&impulse, gained / kinetic, structure.base().B) {
-            self.found.see(which, value, time);
-            let Assumption { limit, passing, .. } = &ASSUMPTIONS[which];
-            if passing.passes(value, limit(&self.limits)) {
-                self.found.see_beyond(which, time, 1.0);
-            }
-        }
-    }
-}
-
-impl<Q: Coordinates> Watch<Q> for Validity {
-    fn piece(&mut self, piece: &Piece<Q>) {
-        self.see_passing(piece);
-        let phase = piece.before.phase;
         if !(NO_SLIDING.holds_in)(phase) {
             return;
         }
         let (mut arcs, mut count) = (piece.arcs(), 0);
         loop {
-            if arcs.left().and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
+            if arcs.left.and_then(extents_of_vibration).is_some_and(|extents| !self.may_matter(phase, &extents)) {
                 break;
             }
             let Some(expansion) = arcs.next() else { break };
@@ -355,7 +300,42 @@ impl<Q: Coordinates> Watch<Q> for Validity {
     }
 
     fn transition(&mut self, transition: &Transition<Q>) {
-        self.see_transition(transition);
+        let &Transition { time, kind, before, after } = transition;
+        let structure = &self.structure;
+        let (side, phase) = match kind {
+            TransitionKind::Impact(side) => (side.opposite(), Phase::Rocking(side)),
+            // s θ falls to 0
+            TransitionKind::Landing | TransitionKind::Settling => (Side::of(-before.theta_dot), Phase::FullContact),
+            _ => return,
+        };
+        self.found.settlings += u64::from(kind == TransitionKind::Settling);
+        let is_landing = phase.properties().is_down;
+        // the rigid limit that bounces has come to rest: what is left below the tolerance is no impact
+        let is_no_impact = match structure.is_rigid() {
+            true => impact::restitution::<Q>(structure, side, &before) > 0.0,
+            false => after != impact::land::<Q>(structure, &before),
+        };
+        if is_landing && is_no_impact {
+            return;
+        }
+        let kinetic = kinetic(&Instant::<f64, Q>::of(structure, Phase::Rocking(side), &before, Load::NONE));
+        if kinetic == 0.0 {
+            return;
+        }
+        let gained = match is_landing {
+            false => impact::energy_gained::<Q>(structure, side, &before),
+            true => 0.0, // a landing always loses
+        };
+        let impulse = Impulse::of::<Q>(structure, (Phase::Rocking(side), &before), (phase, &after));
+        self.found.impacts += 1;
+        self.found.gains += u64::from(gained / kinetic > 0.0);
+        for (which, value) in of_impact(&impulse, gained / kinetic, structure.base().B) {
+            self.found.see(which, value, time);
+            let Assumption { limit, passing, .. } = &ASSUMPTIONS[which];
+            if passing.passes(value, limit(&self.limits)) {
+                self.found.see_beyond(which, time, 1.0);
+            }
+        }
     }
 }
 

@@ -1,20 +1,14 @@
 //! The largest magnitude of a polynomial: bounds over a step, and all of its stationary points.
 
 use crate::series::first_crossing::{Crossing, Gap, first_time_closed_from};
-use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate, weighed_sum};
+use crate::series::taylor::{Series, ZERO, each_order, evaluate, weighed_sum};
 
-/// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
-pub(crate) const OFF_CHORD: Series = {
-    let mut off = [1.0; MAX_ORDER + 2];
-    let known =
-        [0.0, 0.0, 0.25, 0.385, 0.473, 0.535, 0.583, 0.62, 0.651, 0.676, 0.697, 0.716, 0.732, 0.746, 0.758, 0.77];
-    let mut k = 0;
-    while k < known.len() {
-        off[k] = known[k];
-        k += 1;
-    }
-    off
-};
+/// max (σ − σᵏ) over 0 ≤ σ ≤ 1 of the first k, rounded up.
+const OFF_FIRST: [f64; 16] =
+    [0.0, 0.0, 0.25, 0.385, 0.473, 0.535, 0.583, 0.62, 0.651, 0.676, 0.697, 0.716, 0.732, 0.746, 0.758, 0.77];
+
+/// The same for each k.
+pub(crate) const OFF_CHORD: Series = each_order!(k from 0: if k < OFF_FIRST.len() { OFF_FIRST[k] } else { 1.0 });
 
 /// How far Σ c_k σᵏ can leave the chord between its ends up to σ = `reach`.
 #[inline(always)]
@@ -124,7 +118,6 @@ mod tests {
             let curvature: f64 = coefficients.iter().enumerate().map(|(k, c)| (k * k) as f64 * c.abs()).sum();
             let unseen = curvature * (reach / SAMPLES as f64).powi(2) / 8.0;
             prop_assert!(value >= sampled * (1.0 - 1e-14) && value <= sampled + unseen + 1e-14, "{value} {sampled}");
-            prop_assert!(bound(&coefficients, reach) >= value * (1.0 - 1e-14));
             prop_assert!(bound(&coefficients, reach) >= value * (1.0 - 1e-14));
         }
     }

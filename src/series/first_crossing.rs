@@ -6,7 +6,7 @@
 //! up to σ − 2 g/g' and closes there. A method of fourth order then finds that root in fewer evaluations. Where a gap has only just
 //! opened its first terms are so small that marching would hardly move; their signs then say how far it is open.
 
-use crate::series::taylor::{Series, ZERO, sum_of_magnitudes, weighed_sum};
+use crate::series::taylor::{Series, each_order, sum_of_magnitudes, weighed_sum};
 use wide::f64x2;
 
 /// A gap over one step: the polynomial `offset + sign·Σ c_k σ^k`.
@@ -77,15 +77,7 @@ impl<'a> Gap<'a> {
     /// Bound M of its second derivative up to σ = `reach`.
     fn curvature(&self, reach: f64) -> f64 {
         /// k (k − 1) of each k.
-        const FACTORS: Series = {
-            let mut factors = ZERO;
-            let mut k = 2;
-            while k < factors.len() {
-                factors[k] = (k * (k - 1)) as f64;
-                k += 1;
-            }
-            factors
-        };
+        const FACTORS: Series = each_order!(k from 2: (k * (k - 1)) as f64);
         let terms = self.coefficients.get(2..).unwrap_or_default();
         if reach == 1.0 {
             return weighed_sum(&FACTORS[2..], terms);

@@ -86,28 +86,26 @@ pub(crate) fn sum_of_magnitudes(coefficients: &[f64]) -> f64 {
     weighed_sum(&[1.0; MAX_ORDER + 2], coefficients)
 }
 
+/// A series whose coefficient of each order `$k` from `$from` on is this, and 0 before.
+macro_rules! each_order {
+    ($k:ident from $from:literal: $coefficient:expr) => {{
+        let mut series = $crate::series::taylor::ZERO;
+        let mut $k = $from;
+        while $k < series.len() {
+            series[$k] = $coefficient;
+            $k += 1;
+        }
+        series
+    }};
+}
+pub(crate) use each_order;
+
 /// The orders, as weights of [`weighed_sum`].
-pub(crate) const ORDERS: Series = {
-    let mut orders = ZERO;
-    let mut k = 0;
-    while k < orders.len() {
-        orders[k] = k as f64;
-        k += 1;
-    }
-    orders
-};
+pub(crate) const ORDERS: Series = each_order!(k from 0: k as f64);
 
 /// 1/k, looked up.
 #[inline]
 pub(crate) fn reciprocal(k: usize) -> f64 {
-    const RECIPROCAL: Series = {
-        let mut reciprocal = ZERO;
-        let mut k = 1;
-        while k < reciprocal.len() {
-            reciprocal[k] = 1.0 / k as f64;
-            k += 1;
-        }
-        reciprocal
-    };
+    const RECIPROCAL: Series = each_order!(k from 1: 1.0 / k as f64);
     RECIPROCAL[k]
 }

@@ -16,7 +16,8 @@ pub struct Gauge {
     pub(crate) stiffness: Modes,
     pub(crate) damping: Modes,
     pub(crate) push: Modes,
-    /// The rest beside the modes of the sum of the heights, and of the sum of the weights.
+    /// The rest beside the modes of the sum of the heights, and of the sum of the weights: the moment and the force on mass that no mode carries,
+    /// of a unit of force on a floor whose acceleration this gauge reads.
     pub(crate) left: [f64; 2],
 }
 
@@ -50,12 +51,6 @@ impl Gauge {
         let is_multiple = are_same(self.shape.numbers(), other.shape.numbers())
             && (0..2).all(|i| are_same(&self.left[i..=i], &other.left[i..=i]));
         is_multiple.then_some(ratio)
-    }
-
-    /// The force and the moment on mass that no mode carries, of a `force` (N) on a floor whose acceleration this gauge reads.
-    pub(crate) fn on_rest(&self, force: f64) -> [f64; 2] {
-        let [height, share] = self.left;
-        [force * share, force * height]
     }
 }
 

@@ -527,9 +527,7 @@ impl Foundation {
         }
         [y, slope]
     }
-}
 
-impl Foundation {
     /// y of a structure that is held at the rotation of this sine on points that have settled by `s` (m): Σ min(q, k max(0, ξ sin θ − s − y))
     /// = m_t g + max(0, P_0 + k_t (y − y_s)).
     pub(crate) fn level(&self, sin: f64, base: &Base, s: &dyn Fn(usize) -> f64) -> f64 {

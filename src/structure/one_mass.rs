@@ -87,11 +87,6 @@ impl OneMass {
         })
     }
 
-    /// The mode of vibration in full contact.
-    pub fn mode(&self) -> &Mode {
-        &self.mode
-    }
-
     /// The rigid base.
     pub fn base(&self) -> &Base {
         &self.base

@@ -11,7 +11,7 @@ use crate::pulse::{Pulse, units_of};
 use crate::{Refused, ensure};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::levels::uplift::least_push;
-use rocking::run::lanes::Rocked;
+use rocking::run::fall::FallPeaks;
 use rocking::run::record::Record;
 use rocking::run::{Ending, Finish, Run, RunError, Runs, rocked_each};
 use rocking::{Detail, Modes, Structure};
@@ -171,8 +171,8 @@ impl MapPoint {
         (self.fate, if self.fate == Fate::Overturns { self.impacts.min(2) } else { 0 })
     }
 
-    fn of<Q: Runs>(run: &Run<Q>, finish: Result<Finish<Q>, RunError>, Rocked { theta, impacts }: Rocked) -> MapPoint {
-        let theta = theta / libm::atan(run.structure.base().tan_alpha_cg);
+    fn of<Q: Runs>(run: &Run<Q>, finish: Result<Finish<Q>, RunError>, rocked: FallPeaks) -> MapPoint {
+        let theta = rocked.all().theta().magnitude / libm::atan(run.structure.base().tan_alpha_cg);
         let (fate, transitions, end, reason) = match finish {
             Ok(finish) => {
                 let fate = match finish.ending {
@@ -185,7 +185,7 @@ impl MapPoint {
             }
             Err(error) => (Fate::Failed, 0, error.time().unwrap_or(run.ground.start()), error.to_string()),
         };
-        MapPoint { fate, impacts, theta, transitions, end, condition: None, reason }
+        MapPoint { fate, impacts: rocked.impacts, theta, transitions, end, condition: None, reason }
     }
 
     /// How much it differs from `other`, whose amplitude is larger by [`PERTURBATION`].

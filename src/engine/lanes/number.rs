@@ -1,10 +1,10 @@
 //! A number of several runs side by side, in one register of the processor.
 
-use crate::numbers::Real;
+use crate::numbers::{Real, operator};
 use pulp::Simd;
 use pulp::bytemuck::cast_slice;
 use std::array::from_ref;
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+use std::ops::Neg;
 
 /// The most runs that lie side by side.
 pub(crate) const MOST: usize = 8;
@@ -159,26 +159,12 @@ impl<S: Simd> Answers<S> {
     }
 }
 
-/// Implements an operator lane by lane.
-macro_rules! operator {
-    ($of:ident, $trait:ident, $name:ident, $operation:ident) => {
-        impl<S: Simd> $trait for $of<S> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                $of { of: self.simd.$operation(self.of, other.of), ..self }
-            }
-        }
-    };
-}
-
-operator!(Lanes, Add, add, add_f64s);
-operator!(Lanes, Sub, sub, sub_f64s);
-operator!(Lanes, Mul, mul, mul_f64s);
-operator!(Lanes, Div, div, div_f64s);
-operator!(Answers, BitAnd, bitand, and_m64s);
-operator!(Answers, BitOr, bitor, or_m64s);
+operator!([S: Simd] Lanes<S>: Add<Self>, add, |a, b| Lanes { of: a.simd.add_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Lanes<S>: Sub<Self>, sub, |a, b| Lanes { of: a.simd.sub_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Lanes<S>: Mul<Self>, mul, |a, b| Lanes { of: a.simd.mul_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Lanes<S>: Div<Self>, div, |a, b| Lanes { of: a.simd.div_f64s(a.of, b.of), ..a });
+operator!([S: Simd] Answers<S>: BitAnd<Self>, bitand, |a, b| Answers { of: a.simd.and_m64s(a.of, b.of), ..a });
+operator!([S: Simd] Answers<S>: BitOr<Self>, bitor, |a, b| Answers { of: a.simd.or_m64s(a.of, b.of), ..a });
 
 impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;

@@ -102,24 +102,23 @@ pub struct Assumption {
     pub start: f64,
 }
 
-/// Place of `tension_max` in [`ASSUMPTIONS`].
-pub const TENSION: usize = 0;
-/// Place of `R_v_min` in [`ASSUMPTIONS`].
-pub const EDGE_LOAD: usize = 1;
-/// Place of `mu_required` in [`ASSUMPTIONS`].
-pub const FRICTION: usize = 2;
-/// Place of `mu_impact` in [`ASSUMPTIONS`].
-pub const IMPACT_FRICTION: usize = 3;
-/// Place of `tension_impact` in [`ASSUMPTIONS`].
-pub const IMPACT_TENSION: usize = 4;
-/// Place of `energy_gain_max` in [`ASSUMPTIONS`].
-pub const ENERGY: usize = 5;
-/// Place of `weight_min` in [`ASSUMPTIONS`].
-pub const WEIGHT: usize = 6;
+/// Declares [`ASSUMPTIONS`] and the place of each by its rows: place, name, description, meaning, values that pass, limit, start, and
+/// whether it is about impacts only.
+macro_rules! assumptions {
+    ($($place:ident $name:literal $description:literal, $meaning:literal,
+        $passing:ident $limit:expr, $start:expr, $impacts:expr;)*) => {
+        #[allow(non_camel_case_types, clippy::upper_case_acronyms)] // as the places
+        enum Places {
+            $($place),*
+        }
 
-macro_rules! assumption {
-    ($name:literal $description:literal, $meaning:literal, $passing:ident $limit:expr, $start:expr, $impacts:expr) => {
-        Assumption {
+        $(
+            #[doc = concat!("Place of `", $name, "` in [`ASSUMPTIONS`].")]
+            pub const $place: usize = Places::$place as usize;
+        )*
+
+        /// All assumptions, in the order of [`Findings::worst`](super::Findings::worst).
+        pub const ASSUMPTIONS: [Assumption; [$($name),*].len()] = [$(Assumption {
             name: $name,
             time_name: concat!("t_", $name),
             description: $description,
@@ -129,48 +128,33 @@ macro_rules! assumption {
             passing: Passing::$passing,
             limit: $limit,
             start: $start,
-        }
+        }),*];
     };
 }
 
-/// All assumptions, in the order of [`Findings::worst`](super::Findings::worst).
-pub const ASSUMPTIONS: [Assumption; 7] = [
-    assumption!(
-        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g; above 0 the model needs tension at the base; -inf before full contact",
+assumptions! {
+    TENSION "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g; above 0 the model needs tension at the base; -inf before full contact",
         "the model holds the base down by tension; a real base lifts off before |u| = u_cr",
-        Above |limits| limits.tension, f64::NEG_INFINITY, false
-    ),
-    assumption!(
-        "R_v_min" "smallest R_v/W; below 0 the model needs tension at the edge in contact",
+        Above |limits| limits.tension, f64::NEG_INFINITY, false;
+    EDGE_LOAD "R_v_min" "smallest R_v/W; below 0 the model needs tension at the edge in contact",
         "the model holds the edge in contact down by tension; a real edge jumps",
-        Below |limits| limits.edge_load, f64::INFINITY, false
-    ),
-    assumption!(
-        "mu_required" "largest |R_h|/R_v, the coefficient of friction that the base needs; infinite once R_v is 0 or less",
+        Below |limits| limits.edge_load, f64::INFINITY, false;
+    FRICTION "mu_required" "largest |R_h|/R_v, the coefficient of friction that the base needs; infinite once R_v is 0 or less",
         "the base needs that coefficient of friction; a real base may slide",
-        Above |limits| limits.friction, 0.0, false
-    ),
-    assumption!(
-        "mu_impact" "largest |I_h|/I_v of an impact, the coefficient of friction that it needs; infinite if I_v is 0 or less",
+        Above |limits| limits.friction, 0.0, false;
+    IMPACT_FRICTION "mu_impact" "largest |I_h|/I_v of an impact, the coefficient of friction that it needs; infinite if I_v is 0 or less",
         "the base needs that coefficient of friction at an impact; a real base may slide",
-        Above |limits| limits.friction, 0.0, true
-    ),
-    assumption!(
-        "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact; above 0 the model needs tension at an edge",
+        Above |limits| limits.friction, 0.0, true;
+    IMPACT_TENSION "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact; above 0 the model needs tension at an edge",
         "an impact needs tension at an edge; a real impact has a larger r, or the other edge lifts off",
-        Above |limits| limits.tension, -1.0, true
-    ),
-    assumption!(
-        "energy_gain_max" "largest energy gain at an impact, as a fraction of the kinetic energy before it; 0 without a gain",
+        Above |limits| limits.tension, -1.0, true;
+    ENERGY "energy_gain_max" "largest energy gain at an impact, as a fraction of the kinetic energy before it; 0 without a gain",
         "an impact raises the energy, which no real impact does",
-        Above |limits| limits.energy_gain, 0.0, true
-    ),
-    assumption!(
-        "weight_min" "smallest (g + a_v)/g; at 0 or below no weight holds the base down; 1 without vertical motion",
+        Above |limits| limits.energy_gain, 0.0, true;
+    WEIGHT "weight_min" "smallest (g + a_v)/g; at 0 or below no weight holds the base down; 1 without vertical motion",
         "no weight holds the base down; a real base flies",
-        AtOrBelow |_| 0.0, f64::INFINITY, false
-    ),
-];
+        AtOrBelow |_| 0.0, f64::INFINITY, false;
+}
 
 /// Weight W = (m + m0) g (N) and half the width B (m) of the structure.
 #[derive(Clone, Copy, Debug)]
