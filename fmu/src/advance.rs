@@ -9,7 +9,6 @@ use rocking::{LinearLoad, Watch};
 /// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// How an advance has ended.
 type Stop = Result<Progress, AdvanceError>;
 
 impl<Q: Runs> Scene<Q> {

@@ -60,7 +60,6 @@ pub struct Course<Q: Runs = f64> {
     pub peaks: FallNumbers,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Findings,
-    /// Names the record that the ground follows.
     pub record: Option<RecordDigest>,
 }
 

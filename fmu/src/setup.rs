@@ -10,7 +10,6 @@ use rocking::{Detail, GroundMotion, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The settings before a simulation starts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
     /// The numbers of the structure's description that have variables.
@@ -31,9 +30,7 @@ pub struct Setup {
     pub(crate) a_g_late: bool,
     /// Whether F_t goes on with the slope of its last two values.
     pub(crate) F_t_extrapolated: bool,
-    /// Whether peaks are watched.
     pub(crate) peaks: bool,
-    /// Whether the limits of the model are watched.
     pub(crate) validity: bool,
 }
 
@@ -56,7 +53,6 @@ impl Setup {
         contents.description().with(&self.numbers).parameters.g
     }
 
-    /// How the inputs act between communication points.
     pub(crate) fn between(&self) -> [Between; LOADS.len()] {
         let of_ground = if self.a_g_late { Between::Late } else { Between::Held };
         let F_t = if self.F_t_extrapolated { Between::Extrapolated } else { Between::Held };

@@ -15,7 +15,6 @@ pub struct Shown<'a, Q: Runs = f64> {
     pub load: Load<Q>,
     /// Computed when they are first asked for, as the next.
     reactions: OnceCell<Reactions>,
-    /// Derivatives of the states.
     rates: OnceCell<State<Q>>,
     sample: OnceCell<Sample<'a, Q>>,
 }
@@ -27,12 +26,10 @@ impl<'a, Q: Runs> Shown<'a, Q> {
         Shown { scene, setup, load, reactions, rates, sample }
     }
 
-    /// The motion.
     pub fn sample(&self) -> &Sample<'a, Q> {
         self.sample.get_or_init(|| self.scene.engine.sample(self.load))
     }
 
-    /// The reactions.
     fn reactions(&self) -> &Reactions {
         self.reactions.get_or_init(|| self.sample().reactions())
     }
@@ -49,7 +46,6 @@ impl<'a, Q: Runs> Shown<'a, Q> {
         reaction.or_else(|| rates.and_then(|_| last(|source| matches!(source, Source::StateRate(_)))))
     }
 
-    /// Derivatives of the states.
     pub fn state_rates(&self) -> &State<Q> {
         self.rates.get_or_init(|| self.sample().state_rates())
     }

@@ -19,7 +19,6 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
 
 /// The worst value in a run of one of the [`ASSUMPTIONS`], and its instant (s), for programs.
 #[derive(Serialize)]
-#[allow(missing_docs)]
 pub struct Beyond {
     pub name: &'static str,
     pub value: PrintedNumber,

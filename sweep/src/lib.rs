@@ -18,7 +18,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 pub use rocking::Refused;
 use rocking::structure::quantity::ensure;
 
-/// Most runs at a time.
 const MOST_THREADS: i64 = 1024;
 
 /// The threads that do `threads` runs at a time; 0 is one per core.

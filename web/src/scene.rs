@@ -165,7 +165,6 @@ impl Fields {
         T::deserialize(StrDeserializer::<Error>::new(self.text(name).unwrap_or(default))).map_err(says)
     }
 
-    /// Whether the structure has storeys.
     pub fn is_frame(&self) -> bool {
         self.text("storeys").is_some()
     }

@@ -40,7 +40,6 @@ pub fn documentation(version: Version, name: &str, contents: &Contents, librarie
     fillings.iter().fold(TEMPLATE.to_owned(), |page, (place, text)| page.replace(place, text))
 }
 
-/// `text` as HTML shows it.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;")
 }

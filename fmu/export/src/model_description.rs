@@ -7,7 +7,6 @@ use FlexibleRocking::variables::VariableTable;
 use fmi_unit::Variable;
 use model_description::{DefaultExperiment, ModelDescription};
 
-/// The model in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks on its foundation under earthquake ground motion";
 
 /// The content of the log category of events, in one line.
