@@ -11,10 +11,9 @@ mod structure;
 mod sweep;
 mod tables;
 
-use arguments::{one_of, refused, warn};
+use arguments::{one_of, refused, reject, warn};
 use fmu_export::{Contents, Library, Version};
 use interruptible::interruptible;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rocking_records::Reading;
 use rocking_report::output_files::OutputFiles;
@@ -103,7 +102,7 @@ fn export(
     let mut records: Vec<_> = records.iter().map(contents).collect::<PyResult<_>>()?;
     if let Some(other) = records.iter().skip(1).position(|record| record.len() > 1) {
         let needed = "the FMU follows the first alone, and no other may have a vertical component";
-        return Err(PyValueError::new_err(format!("record {}: {needed}", other + 2)));
+        reject!("record {}: {needed}", other + 2);
     }
     let vertical = records.first_mut().filter(|first| first.len() > 1).and_then(Vec::pop);
     interruptible(py, move |_| -> anyhow::Result<()> {

@@ -1,11 +1,11 @@
 //! `Record`: a ground motion from arrays, a file or a formula.
 
-use crate::arguments::{argument, number, numbers, one_of, refused, warn};
+use crate::arguments::{argument, number, numbers, one_of, refused, reject, warn};
 use crate::interruptible::interruptible;
 use crate::structure::PyStructure;
 use anyhow::ensure;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
@@ -63,7 +63,7 @@ fn fixed(samples: Record, units: [Unit; 2]) -> PyResult<(Record, Unit)> {
     }
     if units.into_iter().any(is_of_g) {
         let needed = "one unit is needed; say unit, or scale one of the files";
-        return Err(PyValueError::new_err(format!("record_v is in {vertical} and file in {unit}: {needed}")));
+        reject!("record_v is in {vertical} and file in {unit}: {needed}");
     }
     Ok((each_in_m_s2(samples, units, G).map_err(refused)?, Unit::MetrePerSecondSquared))
 }
@@ -140,22 +140,21 @@ fn of_trace<'py>(
     given: &Bound<'py, PyAny>,
     unit: Option<Unit>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Unit, String)> {
-    let refused = |why: String| Err(PyValueError::new_err(why));
     let trace = match given.getattr("traces") {
         Ok(traces) if traces.len()? == 1 => traces.get_item(0)?,
         Ok(traces) => {
             let needed = "a Record has one: give one of them, such as Record(stream[0], unit=...)";
-            return refused(format!("the stream has {} traces, {}, and {needed}", traces.len()?, ids(&traces)?));
+            reject!("the stream has {} traces, {}, and {needed}", traces.len()?, ids(&traces)?);
         }
         Err(_) => given.clone(),
     };
     let (Ok(data), Ok(stats)) = (trace.getattr("data"), trace.getattr("stats")) else {
-        return refused(format!("a_g is needed beside time = {given:?}, unless that is a Trace or a Stream of ObsPy"));
+        reject!("a_g is needed beside time = {given:?}, unless that is a Trace or a Stream of ObsPy");
     };
     let title = trace.getattr("id")?.str()?.to_string();
     let Some(unit) = unit else {
         let needed = "say unit=, such as unit=\"m/s2\" after trace.remove_response(output=\"ACC\")";
-        return refused(format!("the trace {title} does not state the unit of its samples: {needed}"));
+        reject!("the trace {title} does not state the unit of its samples: {needed}");
     };
     Ok((stats.getattr("delta")?, data, unit, title))
 }
@@ -236,10 +235,7 @@ impl PyRecord {
             let samples = numbers(name, samples)?;
             let times: Vec<f64> = match number("dt", time) {
                 Ok(dt) if dt > 0.0 && dt.is_finite() => (0..samples.len()).map(|i| i as f64 * dt).collect(),
-                Ok(dt) => {
-                    let needed = "a finite number greater than 0 is needed";
-                    return Err(PyValueError::new_err(format!("dt = {dt} is out of range: {needed}")));
-                }
+                Ok(dt) => reject!("dt = {dt} is out of range: a finite number greater than 0 is needed"),
                 Err(_) => numbers("time", time)?,
             };
             Record::from_samples(title, times, samples).map_err(refused)

@@ -1,13 +1,13 @@
 //! `sweep` and `fragility`: many runs on all cores, and what they say together.
 
-use crate::arguments::{argument, conditions, numbers, one_of, refused};
+use crate::arguments::{argument, conditions, numbers, one_of, refused, reject};
 use crate::interruptible::{FAULT, MOMENT, interruptible};
 use crate::record::{G, RecordArgument};
 use crate::structure::PyStructure;
 use FlexibleRocking::BUILD;
 use anyhow::ensure;
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
 use rocking::Detail;
@@ -126,8 +126,7 @@ fn motions<'a>(
     let motion = |(name, RecordArgument(record)): &(String, RecordArgument)| {
         let record = record.get();
         if let (true, Some(other)) = (record.is_in_g(), other) {
-            let needed = "a sweep has one g, in which its records are given";
-            return Err(PyValueError::new_err(format!("g = {other} m/s2 and g = {g} m/s2: {needed}")));
+            reject!("g = {other} m/s2 and g = {g} m/s2: a sweep has one g, in which its records are given");
         }
         NamedRecord::new(name, record.unscaled(g).map_err(refused)?, record.scale).map_err(refused)
     };
