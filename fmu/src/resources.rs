@@ -88,11 +88,6 @@ impl Contents {
         self.records.first().map_or("", |packed| &packed.file)
     }
 
-    /// The vertical component that it follows unless the host sets another; none if empty.
-    pub fn default_vertical(&self) -> &str {
-        self.vertical.as_ref().map_or("", |packed| &packed.file)
-    }
-
     pub fn packed(&self) -> impl Iterator<Item = &PackedRecord> {
         self.records.iter().chain(&self.vertical)
     }

@@ -43,7 +43,7 @@ impl Setup {
             numbers: contents.numbers(),
             tolerance: DEFAULT_TOLERANCE,
             record: contents.default_record().into(),
-            record_v: contents.default_vertical().into(),
+            record_v: contents.vertical.as_ref().map_or("", |packed| &packed.file).into(),
             ..Setup::default()
         }
     }

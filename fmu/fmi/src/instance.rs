@@ -535,10 +535,11 @@ impl Instance {
             self.stage = Stage::StepComplete;
         }
         let time = self.check_step(point, step)?;
-        let stops_at_events = self.interface.stepping().hands_over();
+        let Stepping { event_mode, early_return } = self.interface.stepping();
         let (start, duration) =
             if is_rounding(point, time, step) { (point, step) } else { (time, point + step - time) };
-        let step = StepRequest { start, duration, stops_at_events };
+        // an event that a step ends at is handed over: the host must be able to do both
+        let step = StepRequest { start, duration, stops_at_events: event_mode && early_return };
         let progress = self.model.advance(step, &self.logger);
         let progress = self.stop_if_stuck(progress)?;
         if progress == StepEnd::Ended {
