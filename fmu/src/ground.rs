@@ -13,7 +13,6 @@ use uuid::Uuid;
 /// Names the samples of a record, and their unit.
 pub type RecordDigest = [u8; 16];
 
-/// A record that the ground can follow.
 #[derive(Debug)]
 pub struct GroundRecord {
     /// The record, as its file gives it, or as the files of both components give them.
@@ -86,7 +85,6 @@ impl GroundRecord {
     }
 }
 
-/// The file that one of the parameters names.
 struct NamedFile<'a> {
     parameter: &'static str,
     text: &'a str,

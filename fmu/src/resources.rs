@@ -49,7 +49,6 @@ pub struct PackedRecord {
 }
 
 impl Contents {
-    /// The numbers that the structure was made of.
     pub fn description(&self) -> &Description {
         self.structure.description().expect("an FMU is of a structure that was described")
     }

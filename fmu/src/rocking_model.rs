@@ -64,7 +64,6 @@ pub struct Course<Q: Runs = f64> {
 }
 
 impl<Q: Runs> RockingModel<Q> {
-    /// An instance just instantiated from `archive`.
     pub fn new(archive: Archive) -> RockingModel<Q> {
         let (table, setup) = (VariableTable::new(&archive.contents), Setup::new(&archive.contents));
         let inputs = Inputs::new(&archive.contents.structure);
@@ -101,7 +100,6 @@ impl<Q: Runs> RockingModel<Q> {
         Ok(())
     }
 
-    /// The sources of the values of `references`.
     pub(crate) fn sources_of(&self, references: &[u32]) -> Vec<Source> {
         references.iter().map(|reference| self.table.sources[*reference as usize]).collect()
     }

@@ -35,7 +35,6 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// The setup of an instance just instantiated from an archive with these contents.
     pub(crate) fn new(contents: &Contents) -> Setup {
         let at_rest = vec![0.0; contents.structure.floors().len()];
         Setup {

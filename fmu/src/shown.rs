@@ -20,7 +20,6 @@ pub struct Shown<'a, Q: Runs = f64> {
 }
 
 impl<'a, Q: Runs> Shown<'a, Q> {
-    /// The values of `scene`, which follows `setup`, under `load`.
     pub fn new(scene: &'a Scene<Q>, setup: &'a Setup, load: Load<Q>) -> Shown<'a, Q> {
         let (reactions, rates, sample) = Default::default();
         Shown { scene, setup, load, reactions, rates, sample }

@@ -88,7 +88,6 @@ pub fn rows(columns: &[(&str, &str, Option<Bound<'_, PyAny>>)], of: &str) -> PyR
     Ok(rows)
 }
 
-/// The `table` as a dict.
 pub fn dict<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     let text = serde_json::to_string(table).map_err(refused)?; // which keeps every bit
     Ok(py.import("json")?.call_method1("loads", (text,))?.cast_into()?)

@@ -15,7 +15,6 @@ const MOST_BINS: usize = 20;
 /// Intensities with fewer runs than this each, on average, share bins.
 const FEWEST_RUNS: usize = 3;
 
-/// The runs of one population, counted.
 #[derive(Clone, Debug)]
 pub struct Exceedances {
     pub population: String,

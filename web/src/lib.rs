@@ -75,7 +75,6 @@ pub struct Explorer {
 
 #[wasm_bindgen]
 impl Explorer {
-    /// An explorer without files.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Explorer {
         Explorer::default()

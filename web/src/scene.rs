@@ -270,7 +270,6 @@ impl Fields {
         Ok(Pulse { cycles: self.given("cycles").unwrap_or(Ok(pulse.cycles))?, phase: self.number("phase")?, ..pulse })
     }
 
-    /// The options with which the file is read.
     pub fn reading(&self) -> Result<Reading, String> {
         let dt = self.given("dt").transpose()?;
         let unit = self.text("unit").map(|_| self.named("unit", "")).transpose()?;

@@ -8,7 +8,6 @@ use FlexibleRocking::resources::Contents;
 const TEMPLATE: &str = include_str!("../resources/index.html");
 const ICON: &str = include_str!("../resources/model.svg");
 
-/// The page of the FMU `name` with these `contents` and `libraries`.
 pub fn documentation(version: Version, name: &str, contents: &Contents, libraries: &[&Library]) -> String {
     let of = &contents.structure;
     let structure = match of.one() {

@@ -85,7 +85,6 @@ pub enum ExportError {
     Archive(#[from] zip::result::ZipError),
 }
 
-/// The path of a file, and its content.
 pub type RecordFile = (PathBuf, Vec<u8>);
 
 /// The FMU of `contents`, yet without records, under `name` for hosts of `version`: its contents, and the bytes of the archive.

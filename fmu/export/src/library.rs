@@ -60,7 +60,6 @@ impl Platform {
         self.names()[2]
     }
 
-    /// The path of the library in an archive of the model `name`.
     pub(crate) fn path(self, version: Version, name: &str) -> String {
         let (_, extension) = self.file().rsplit_once('.').expect("they have one");
         format!("binaries/{}/{name}.{extension}", self.folder(version))

@@ -6,7 +6,6 @@ use plotters::prelude::*;
 use rocking_sweep::map::{Axis, Fate, GridPlace, Map, MapPoint, PARTS, nearest};
 use std::{collections::HashMap, ops::Range};
 
-/// A map, and what is known of it.
 pub struct PulseSpectrum {
     pub name: String,
     pub map: Map,
