@@ -1,6 +1,6 @@
 //! The Python module: the same crates as the command line's, as Python's objects. The library computes; this crate reads
 //! arguments and gives results their form in Python.
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
+#![expect(clippy::too_many_arguments, reason = "keywords of Python")]
 
 mod advice;
 mod arguments;
@@ -62,7 +62,6 @@ impl<'a, 'py> FromPyObject<'a, 'py> for ToPack {
 
 /// Writes the FMU to `target`: of `structure`, with `records` inside, of which it follows the first, with its vertical component.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 fn export(
     py: Python<'_>,
     target: PathBuf,

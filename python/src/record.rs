@@ -192,7 +192,6 @@ impl PyRecord {
 
     #[new]
     #[pyo3(signature = (time, a_g=None, a_v=None, *, unit=None, time_scale=1.0, scale=1.0, title=None))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn of_arrays(
         py: Python<'_>,
         time: &Bound<'_, PyAny>,
@@ -265,7 +264,6 @@ impl PyRecord {
     /// assumption about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, record_v=None, unit=None, dt=None, column=None, column_v=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn read(
         py: Python<'_>,
         file: PathBuf,
@@ -444,7 +442,6 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 #[pyo3(
     text_signature = "(shape, *, amplitude, frequency, cycles=None, phase=0.0, error=0.0001, structure=None, g=9.81)"
 )]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
     py: Python<'_>,
     shape: &Bound<'_, PyAny>,

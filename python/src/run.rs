@@ -306,7 +306,6 @@ impl PyRun {
 /// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
 /// Python go on meanwhile; the same inputs give the same bits.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 #[pyo3(signature = (structure, record=None, *, duration=None, detail=Detail::Auto, tolerance=DEFAULT_TOLERANCE, condition=false, **initial))]
 #[pyo3(
     text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, condition=False, **initial)"

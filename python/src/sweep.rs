@@ -40,7 +40,6 @@ type Columns<'py> = (Bound<'py, PyList>, Vec<(String, Bound<'py, PyAny>)>, Optio
 /// file at `path`. Returns the rows in that order, with a column of the measure `intensity`. `progress` is called with how
 /// many runs of how many are done.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn sweep<'py>(
     py: Python<'py>,
     structures: Vec<(String, Vec<Py<PyStructure>>)>,
@@ -140,7 +139,6 @@ type FoundDesign =
 
 /// The value of the number `vary` of `structure` at which limits hold in a share of the runs, and the curve over its range.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn design(
     py: Python<'_>,
     structure: &PyStructure,
@@ -178,7 +176,6 @@ pub fn design(
 
 /// A map of `structure` under pulses as CSV: a row for each point, those of the grid first.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn overturning_map(
     py: Python<'_>,
     structure: &PyStructure,

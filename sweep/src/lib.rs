@@ -1,7 +1,5 @@
 //! Many runs: plans of cases, maps over pulses, what became of each run, how often limits are exceeded.
 
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
-
 pub mod condition;
 pub mod design;
 pub mod exceedances;

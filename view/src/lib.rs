@@ -1,5 +1,4 @@
 //! A run as a page that shows the structure in motion, one file that needs nothing else, and as what such a page draws.
-#![allow(non_snake_case)] // P_t, k_t
 
 use rocking::mechanics::shown::Legend;
 use rocking::run::Ending;

@@ -1,5 +1,4 @@
 //! Makes the FMU: an archive of the shared libraries with all that describes them.
-#![allow(non_snake_case)] // the shared library's name
 
 mod documentation;
 mod experiment;

@@ -509,7 +509,6 @@ macro_rules! functions {
             #[doc = ""]
             $(#[$doc])*
             #[inline]
-            #[allow(clippy::too_many_arguments)] // the standard's
             pub unsafe fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
                 unsafe {
                     $crate::c_abi::functions!(
