@@ -24,19 +24,15 @@ use std::path::PathBuf;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::advice::{advise, estimate};
-    #[pymodule_export]
-    use super::export;
-    #[pymodule_export]
-    use super::record::{PyRecord, pulse};
-    #[pymodule_export]
-    use super::run::{PyRun, simulate};
-    #[pymodule_export]
-    use super::structure::{PyStructure, numbers_of, varied};
-    #[pymodule_export]
-    use super::sweep::{PyCurve, columns_of, design, exceeds, fragility, heading_of, overturning_map, sweep};
-    #[pymodule_export]
-    use super::tables::check_ground;
+    use super::{
+        advice::{advise, estimate},
+        export,
+        record::{PyRecord, pulse},
+        run::{PyRun, simulate},
+        structure::{PyStructure, numbers_of, varied},
+        sweep::{PyCurve, columns_of, design, exceeds, fragility, heading_of, overturning_map, sweep},
+        tables::check_ground,
+    };
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python has it")]
