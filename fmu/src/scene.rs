@@ -112,19 +112,8 @@ impl<Q: Runs> Scene<Q> {
         let peaks = FallPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let validity = Findings::since(setup.start_time);
         let [lateral, settlements] = [lateral_states, settlements].map(|count| count(&contents.structure));
-        Ok(Scene {
-            engine,
-            source,
-            ground,
-            elapsed: Elapsed::default(),
-            outside: None,
-            peaks,
-            validity,
-            lateral,
-            settlements,
-            structure,
-            known: OnceCell::new(),
-        })
+        let (elapsed, outside, known) = (Elapsed::default(), None, OnceCell::new());
+        Ok(Scene { engine, source, ground, elapsed, outside, peaks, validity, lateral, settlements, structure, known })
     }
 
     /// Lets the engine do what `change` makes of its settings.

@@ -242,16 +242,9 @@ mod tests {
 
     fn design(vary: &str, between: [f64; 2], limits: &[&str], share: f64) -> Design {
         let records = [("a", 0.5, 0.5), ("b", 0.7, 0.6), ("c", 1.0, 0.45), ("d", 0.4, 0.9), ("e", 1.2, 0.5)];
+        let (vary, limit) = (vary.into(), limits.iter().map(|of| (*of).to_owned()).collect());
         Design {
-            sought: Goal {
-                vary: vary.into(),
-                between,
-                limit: limits.iter().map(|of| (*of).to_owned()).collect(),
-                share,
-                count: 9,
-                refine: 2,
-                ..Goal::default()
-            },
+            sought: Goal { vary, between, limit, share, count: 9, refine: 2, ..Goal::default() },
             structure: Structure::new(Parameters::MCMANUS).unwrap(),
             motions: records.map(|(name, period, amplitude)| sine(name, period, amplitude)).into(),
             scales: vec![1.0],

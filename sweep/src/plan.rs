@@ -128,13 +128,8 @@ macro_rules! with_run {
 
 impl Default for Conditions {
     fn default() -> Conditions {
-        Conditions {
-            initial: State::default(),
-            detail: Detail::default(),
-            tolerance: DEFAULT_TOLERANCE,
-            duration: None,
-            finds_condition: false,
-        }
+        let (initial, detail, tolerance) = (State::default(), Detail::default(), DEFAULT_TOLERANCE);
+        Conditions { initial, detail, tolerance, duration: None, finds_condition: false }
     }
 }
 
