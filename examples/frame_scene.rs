@@ -1,6 +1,5 @@
 //! A frame of many masses under accelerations that are linear between samples: numbers are read, transitions, and
 //! rotation, displacements and accelerations of the floors at the samples are printed (tests/test_frames.py).
-#![allow(non_snake_case)] // the letters of the equations
 
 use rocking::engine::Settings;
 use rocking::structure::parameters::TIES;

@@ -27,7 +27,7 @@
 //! ```
 #![doc = include_str!("../examples/first_run.rs")]
 //! ```
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
+#![warn(missing_docs)]
 
 pub mod digits;
 pub mod engine;

@@ -69,14 +69,10 @@ def rigid_rocking(p, s, load):
     return rates
 
 
-def rigid_impact(p, s, y):
-    return "impact", -s, np.array([0.0, 0.0, 0.0, p.r * y[3]])
-
-
 #: What the independent integration goes by at each level.
 EQUATIONS = {
     "linear": dict(rocking=linear_rocking), "modal": dict(rocking=modal_rocking, uplift_margin=modal_uplift_margin),
-    "rigid": dict(rocking=rigid_rocking, impact=rigid_impact),
+    "rigid": dict(rocking=rigid_rocking, impact=lambda p, s, y: ("impact", -s, np.array([0.0, 0.0, 0.0, p.r * y[3]]))),
     "fixed_base": dict(lifts=lambda *_: False, _first_uplift=lambda *_: None),
 }
 

@@ -27,14 +27,10 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     }
     if let Some(theta) = args.restoring {
         let rows = describe::restoring(&structure, theta)?;
-        return args.results.print(|| Ok(text_of_loop(&rows)), &rows);
+        let line = |of: &FlagPoint| format!("{:>12} {:>14}\n", significant(of.theta), significant(of.moment));
+        let lines = || rows.iter().map(line).collect::<String>();
+        let text = || Ok(format!("{:>12} {:>14}\n{}", "theta (rad)", "moment (N.m)", lines()));
+        return args.results.print(text, &rows);
     }
     args.results.print(|| Ok(describe::text(&structure)?), &describe::numbers(&structure))
-}
-
-/// The moment that turns the base back on the way there and back, for people.
-fn text_of_loop(rows: &[FlagPoint]) -> String {
-    let line =
-        |FlagPoint { theta, moment }: &FlagPoint| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
-    format!("{:>12} {:>14}\n{}", "theta (rad)", "moment (N.m)", rows.iter().map(line).collect::<String>())
 }

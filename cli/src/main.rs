@@ -1,5 +1,4 @@
 //! The command line: write the FMU, simulate a record without a host, show what follows from a structure's parameters.
-#![allow(non_snake_case)] // H, B, V_t: the paper's own letters
 
 mod advise;
 mod cause;

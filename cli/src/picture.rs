@@ -11,7 +11,6 @@ use rocking_report::output_files::{OutputFile, OutputFiles};
 use std::{ops::Range, path::Path};
 
 /// Colours that all eyes tell apart (Okabe and Ito, their purple darker), and those of what is no data.
-#[allow(missing_docs)] // they are called what they are
 pub mod colour {
     use plotters::style::RGBColor;
 

@@ -78,7 +78,6 @@ pub fn csv(headings: impl Serialize, lines: impl Iterator<Item = impl Serialize>
     Ok(writer.into_inner()?)
 }
 
-/// Rows and their origin.
 #[derive(Serialize)]
 pub struct Traced<'a, R> {
     #[serde(flatten)]

@@ -12,7 +12,6 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Steps of the engine that are rehearsed at most: some milliseconds.
 const REHEARSED_STEPS: u64 = 100;
 
-/// How an advance has ended.
 type Stop = Result<Progress, AdvanceError>;
 
 impl<Q: Runs> Scene<Q> {

@@ -7,28 +7,21 @@ use rocking::engine::AdvanceError;
 use rocking::run::record::SamplesError;
 use rocking::{OutOfRange, Refused};
 
-/// Why something is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum Refusal {
-    /// The archive's resources cannot be read.
     #[error(transparent)]
     Resource(#[from] ResourceError),
-    /// A record that cannot be had.
     #[error(transparent)]
     Ground(#[from] GroundError),
-    /// The record is out of the range of an input.
     #[error("the record, as it is scaled: {0}")]
     StrongRecord(OutOfRange),
-    /// The scales leave no ground motion.
     #[error("the record, as it is scaled: {0}")]
     BadScales(#[from] SamplesError),
-    /// The record has changed since a state was kept.
     #[error(
         "the samples of record = {record:?}{} changed after the FMU state was saved",
         if record_v.is_empty() { String::new() } else { format!(" or record_v = {record_v:?}") }
     )]
     OtherRecord { record: String, record_v: String },
-    /// The input runs out of its range.
     #[error("at the end of the step, {0}")]
     InputRunsOut(Failure),
     /// Parameters or initial values that contradict each other.
@@ -40,13 +33,10 @@ pub enum Refusal {
          small)"
     )]
     NoReaction { name: String, time: f64 },
-    /// The solver's own.
     #[error(transparent)]
     Advance(#[from] AdvanceError),
-    /// A trial state that is far from any motion.
     #[error("{name} = {value} is out of range: at most 1e12 in SI units; take a shorter step")]
     FarState { name: String, value: f64 },
-    /// The equations of motion have no solution at a trial state.
     #[error(
         "the derivatives of the states do not exist at t = {time} s (u = {u} m, theta = {theta} rad): take a shorter step"
     )]

@@ -99,7 +99,6 @@ pub(crate) fn coordinates(frame: &Structure) -> Vec<VariableRow> {
     (0..2 * lateral_states(frame) + 2 + settlements(frame)).filter_map(coordinate).collect()
 }
 
-/// The derivatives of all states.
 pub(crate) fn state_rates(structure: &Structure) -> Vec<VariableRow> {
     let (n, is_one) = (lateral_states(structure), structure.is_one_mass());
     let rate = |place: usize| {

@@ -13,14 +13,12 @@ use uuid::Uuid;
 /// Names the samples of a record, and their unit.
 pub type RecordDigest = [u8; 16];
 
-/// A record that the ground can follow.
 #[derive(Debug)]
 pub struct GroundRecord {
     /// The record, as its file gives it, or as the files of both components give them.
     pub record: Record,
     /// The units of its accelerations, and of the vertical ones.
     pub units: [Unit; 2],
-    /// Names all of it.
     pub digest: RecordDigest,
     /// Sentences about each file: first the content, then an assumption.
     pub sentences: Vec<Vec<String>>,
@@ -32,19 +30,14 @@ pub(crate) type CachedRecord = (Uuid, Arc<GroundRecord>);
 /// Why a record cannot be had. Each names the parameter that asks for it.
 #[derive(Debug, thiserror::Error)]
 pub enum GroundError {
-    /// A file that is not in the archive.
     #[error("{0} = {1:?} is not in {folder}; a path on disk needs a separator: .{MAIN_SEPARATOR}{1}", folder = .2.display())]
     NotInArchive(&'static str, String, PathBuf),
-    /// Not the URI of a local file.
     #[error("{0} = {1:?} is not a file URI of this machine, such as file:///tmp/record.AT2")]
     NotAFileUri(&'static str, String),
-    /// The file is no record.
     #[error("{0}: {1}{cause}", cause = .1.source().map(|cause| format!(": {cause}")).unwrap_or_default())]
     NoRecord(&'static str, RecordError),
-    /// The components do not belong together.
     #[error("record_v: {0}")]
     NoPair(#[from] SamplesError),
-    /// A file of the archive is not what was packed.
     #[error("{0} = {1:?} in the archive is not the one that was exported with it; export it again")]
     Changed(&'static str, String),
 }
@@ -92,7 +85,6 @@ impl GroundRecord {
     }
 }
 
-/// The file that one of the parameters names.
 struct NamedFile<'a> {
     parameter: &'static str,
     text: &'a str,

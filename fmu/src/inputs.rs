@@ -70,7 +70,6 @@ struct Input {
     rests: bool,
 }
 
-/// The setting of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 enum InputSetting {
     /// Nothing, or what was set before a step that ended early.
@@ -172,18 +171,15 @@ impl Inputs {
         self.each.iter_mut().for_each(|input| input.between = between[input.load]);
     }
 
-    /// Whether an input is a_v.
     #[inline]
     pub fn is_vertical(&self, which: usize) -> bool {
         self.each[which].load == VERTICAL
     }
 
-    /// The place of a_v.
     pub fn vertical(&self) -> usize {
         (0..self.each.len()).find(|which| self.is_vertical(*which)).expect("every structure has this input")
     }
 
-    /// Whether an input acts as soon as it is set.
     pub fn acts_at_once(&self, which: usize) -> bool {
         self.each[which].acts_at_once()
     }
@@ -193,7 +189,6 @@ impl Inputs {
         self.each[which].set
     }
 
-    /// Sets a value.
     #[inline]
     pub fn set(&mut self, which: usize, value: f64) {
         self.each[which].set(value, self.since, self.ended_early);

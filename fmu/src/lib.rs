@@ -18,7 +18,6 @@
 //!
 //! In a browser no host calls C functions: the table of variables alone is used there.
 #![cfg_attr(target_family = "wasm", allow(dead_code))]
-#![allow(non_snake_case)] // the shared library's name
 
 mod advance;
 mod derivatives;

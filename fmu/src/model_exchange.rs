@@ -59,7 +59,6 @@ impl<Q: Runs> Scene<Q> {
         Some(next).filter(|next| *next > motion.time && next.is_finite())
     }
 
-    /// Leaves the motion to the host's integrator, with the inputs `load`.
     pub fn leave_to_host(&mut self, load: Load<Q>) {
         let (motion, elapsed) = (*self.engine.motion(), self.elapsed);
         self.outside = Some(HostMotion { known: Checkpoint { motion, elapsed, load }, arrived: load, event: elapsed });

@@ -16,13 +16,11 @@ pub const CONTENTS_FILE: &str = "contents.bin";
 pub struct Archive {
     /// Its folder `resources`.
     pub folder: PathBuf,
-    /// The content of the archive.
     pub contents: Contents,
     /// The bytes of the packed records by their names: a host may delete or lock the folder once the instance is made.
     pub files: HashMap<String, Vec<u8>>,
 }
 
-/// The content of an archive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
     /// The structure; the parameters of one mass are start values.
@@ -35,28 +33,22 @@ pub struct Contents {
     pub fixed: bool,
 }
 
-/// Why bytes are not the contents of an archive.
 #[derive(Debug, thiserror::Error)]
 pub enum ContentsError {
-    /// Not the bytes that were exported.
     #[error("not the numbers that were exported; export it again")]
     NoNumbers,
-    /// Numbers that make no structure.
     #[error(transparent)]
     NoStructure(#[from] Refused),
 }
 
-/// A record of an archive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PackedRecord {
     /// Its file in the folder `resources`.
     pub file: String,
-    /// Names its samples.
     pub digest: String,
 }
 
 impl Contents {
-    /// The numbers that the structure was made of.
     pub fn description(&self) -> &Description {
         self.structure.description().expect("an FMU is of a structure that was described")
     }
@@ -95,12 +87,6 @@ impl Contents {
         self.records.first().map_or("", |packed| &packed.file)
     }
 
-    /// The vertical component that it follows unless the host sets another; none if empty.
-    pub fn default_vertical(&self) -> &str {
-        self.vertical.as_ref().map_or("", |packed| &packed.file)
-    }
-
-    /// All that are packed.
     pub fn packed(&self) -> impl Iterator<Item = &PackedRecord> {
         self.records.iter().chain(&self.vertical)
     }
@@ -113,19 +99,15 @@ impl From<Structure> for Contents {
     }
 }
 
-/// Why the contents could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ResourceError {
-    /// No such file, or not readable.
     #[error("{file}: {1}; unpack the whole archive and pass its folder \"resources\"", file = .0.display())]
     Unreadable(PathBuf, io::Error),
-    /// Not the contents of an archive.
     #[error("{file}: {1}", file = .0.display())]
     NoContents(PathBuf, Box<ContentsError>),
 }
 
 impl Archive {
-    /// The one whose folder `resources` is `folder`.
     pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
         let file = folder.join(CONTENTS_FILE);
         let bytes = fs::read(&file).map_err(|error| ResourceError::Unreadable(file.clone(), error))?;

@@ -20,7 +20,6 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-/// The structure on its ground.
 pub struct Scene<Q: Runs = f64> {
     pub engine: Engine<Q>,
     /// The record that the ground follows, as its files give it.
@@ -113,19 +112,8 @@ impl<Q: Runs> Scene<Q> {
         let peaks = FallPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let validity = Findings::since(setup.start_time);
         let [lateral, settlements] = [lateral_states, settlements].map(|count| count(&contents.structure));
-        Ok(Scene {
-            engine,
-            source,
-            ground,
-            elapsed: Elapsed::default(),
-            outside: None,
-            peaks,
-            validity,
-            lateral,
-            settlements,
-            structure,
-            known: OnceCell::new(),
-        })
+        let (elapsed, outside, known) = (Elapsed::default(), None, OnceCell::new());
+        Ok(Scene { engine, source, ground, elapsed, outside, peaks, validity, lateral, settlements, structure, known })
     }
 
     /// Lets the engine do what `change` makes of its settings.
@@ -168,7 +156,6 @@ impl<Q: Runs> Scene<Q> {
         }
     }
 
-    /// The numbers of the state of the engine.
     pub fn states(&self) -> impl Iterator<Item = f64> {
         let motion = self.engine.motion();
         self.components(motion.state, motion.settled.as_ref())
@@ -200,7 +187,6 @@ impl<Q: Runs> Scene<Q> {
         self.ground.as_ref().map_or(0.0, |record| record.end() - record.start())
     }
 
-    /// Names the record that the ground follows.
     pub fn digest(&self) -> Option<RecordDigest> {
         self.source.as_ref().map(|source| source.digest)
     }

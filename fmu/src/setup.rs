@@ -10,7 +10,6 @@ use rocking::{Detail, GroundMotion, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The settings before a simulation starts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
     /// The numbers of the structure's description that have variables.
@@ -31,14 +30,11 @@ pub struct Setup {
     pub(crate) a_g_late: bool,
     /// Whether F_t goes on with the slope of its last two values.
     pub(crate) F_t_extrapolated: bool,
-    /// Whether peaks are watched.
     pub(crate) peaks: bool,
-    /// Whether the limits of the model are watched.
     pub(crate) validity: bool,
 }
 
 impl Setup {
-    /// The setup of an instance just instantiated from an archive with these contents.
     pub(crate) fn new(contents: &Contents) -> Setup {
         let at_rest = vec![0.0; contents.structure.floors().len()];
         Setup {
@@ -46,7 +42,7 @@ impl Setup {
             numbers: contents.numbers(),
             tolerance: DEFAULT_TOLERANCE,
             record: contents.default_record().into(),
-            record_v: contents.default_vertical().into(),
+            record_v: contents.vertical.as_ref().map_or("", |packed| &packed.file).into(),
             ..Setup::default()
         }
     }
@@ -56,7 +52,6 @@ impl Setup {
         contents.description().with(&self.numbers).parameters.g
     }
 
-    /// How the inputs act between communication points.
     pub(crate) fn between(&self) -> [Between; LOADS.len()] {
         let of_ground = if self.a_g_late { Between::Late } else { Between::Held };
         let F_t = if self.F_t_extrapolated { Between::Extrapolated } else { Between::Held };

@@ -15,24 +15,20 @@ pub struct Shown<'a, Q: Runs = f64> {
     pub load: Load<Q>,
     /// Computed when they are first asked for, as the next.
     reactions: OnceCell<Reactions>,
-    /// Derivatives of the states.
     rates: OnceCell<State<Q>>,
     sample: OnceCell<Sample<'a, Q>>,
 }
 
 impl<'a, Q: Runs> Shown<'a, Q> {
-    /// The values of `scene`, which follows `setup`, under `load`.
     pub fn new(scene: &'a Scene<Q>, setup: &'a Setup, load: Load<Q>) -> Shown<'a, Q> {
         let (reactions, rates, sample) = Default::default();
         Shown { scene, setup, load, reactions, rates, sample }
     }
 
-    /// The motion.
     pub fn sample(&self) -> &Sample<'a, Q> {
         self.sample.get_or_init(|| self.scene.engine.sample(self.load))
     }
 
-    /// The reactions.
     fn reactions(&self) -> &Reactions {
         self.reactions.get_or_init(|| self.sample().reactions())
     }
@@ -49,7 +45,6 @@ impl<'a, Q: Runs> Shown<'a, Q> {
         reaction.or_else(|| rates.and_then(|_| last(|source| matches!(source, Source::StateRate(_)))))
     }
 
-    /// Derivatives of the states.
     pub fn state_rates(&self) -> &State<Q> {
         self.rates.get_or_init(|| self.sample().state_rates())
     }

@@ -9,9 +9,7 @@ use rocking::structure::quantity::Quantity;
 use rocking::{Detail, Impulse, Output, Phase, Reactions};
 use std::sync::Arc;
 
-/// The source of the value of a variable.
 #[derive(Clone, Copy, Debug)]
-#[allow(missing_docs)] // the types name what is not said
 pub enum Source {
     /// By its place among the inputs.
     Input(usize),
@@ -27,7 +25,6 @@ pub enum Source {
     Restraint(fn(&Restraints) -> f64),
     Dissipator(fn(&Dissipators) -> f64),
     Phase,
-    /// Transitions so far.
     Transitions,
     Overturned,
     /// A number of the structure, by its place among [`Setup::numbers`].
@@ -48,7 +45,6 @@ pub enum Source {
     WorstInstant(usize),
     /// Impacts that raise the energy.
     Gains,
-    /// The instant of overturning.
     Overturning,
     /// A parameter that is text: which record.
     Text(fn(&mut Setup) -> &mut Arc<str>),
@@ -87,7 +83,6 @@ impl Source {
         }
     }
 
-    /// Sets a parameter or an initial value.
     pub fn set_to(&self, setup: &mut Setup, value: Value) {
         match (self, value) {
             (Source::Detail, Value::Integer(number)) => setup.detail = Detail::ALL[number as usize - 1],
@@ -128,5 +123,4 @@ pub static DETAILS: Enumeration = Enumeration {
     items: names!(Detail::ALL),
 };
 
-/// A variable, and where its value is.
 pub(crate) type VariableRow = (Variable, Source);

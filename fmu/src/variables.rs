@@ -22,12 +22,10 @@ use std::borrow::Cow;
 use std::collections::HashSet;
 use std::sync::{Arc, LazyLock};
 
-/// All variables.
 #[derive(Clone, Debug)]
 pub struct VariableTable {
     /// The variables, in the order of the model description.
     pub variables: Arc<[Variable]>,
-    /// The sources of their values.
     pub sources: Arc<[Source]>,
 }
 
@@ -262,7 +260,6 @@ fn peaks(structure: &Structure) -> Vec<VariableRow> {
     rows.collect()
 }
 
-/// The limits that the motion passes.
 fn validity() -> Vec<VariableRow> {
     let of_assumption = |(which, assumption): (usize, &'static Assumption)| {
         let Assumption { name, time_name, description, time_description, is_of_impacts, .. } = *assumption;
@@ -296,7 +293,6 @@ fn switches() -> [VariableRow; 4] {
     ]
 }
 
-/// The numbers that the structure was made of.
 fn parameters(description: &Description) -> Vec<VariableRow> {
     let row = |(which, of): (usize, DescribedNumber)| {
         let data_type = DataType::Real { unit: of.unit, range: Some((of.min, of.max)) };

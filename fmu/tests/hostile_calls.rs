@@ -6,8 +6,7 @@ mod hostile;
 mod wall;
 
 use FlexibleRocking::resources::{CONTENTS_FILE, Contents};
-use FlexibleRocking::rocking_model::RockingModel;
-use FlexibleRocking::rocking_model::{Condition, Course};
+use FlexibleRocking::rocking_model::{Condition, Course, RockingModel};
 use FlexibleRocking::{fmi2, fmi3};
 use fmi_unit::snapshot::Snapshot;
 use hostile::{Target, hostile_calls};

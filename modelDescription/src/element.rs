@@ -4,7 +4,6 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use std::io;
 
-/// An element, with its attributes and the elements in it.
 pub(crate) struct Element {
     name: &'static str,
     attributes: Vec<(&'static str, String)>,
@@ -12,12 +11,10 @@ pub(crate) struct Element {
 }
 
 impl Element {
-    /// An element without attributes and content.
     pub fn new(name: &'static str) -> Element {
         Element { name, attributes: Vec::new(), content: Vec::new() }
     }
 
-    /// The element with one more attribute.
     pub fn with(self, name: &'static str, value: impl ToString) -> Element {
         self.with_any(name, Some(value))
     }
@@ -33,13 +30,11 @@ impl Element {
         names.iter().fold(self, |element, name| element.with(name, true))
     }
 
-    /// The element with more elements in it.
     pub fn holding(mut self, elements: impl IntoIterator<Item = Element>) -> Element {
         self.content.extend(elements);
         self
     }
 
-    /// The element, unless nothing is in it.
     pub fn unless_empty(self) -> Option<Element> {
         (!self.content.is_empty()).then_some(self)
     }

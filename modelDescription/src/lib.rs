@@ -1,6 +1,7 @@
 //! The model description of a unit for model exchange and co-simulation, from its table of variables, and the archive.
 //!
 //! [`ModelDescription::to_xml`] writes `modelDescription.xml` for a [`Version`] of the standard.
+#![warn(missing_docs)]
 
 pub mod archive;
 mod description;

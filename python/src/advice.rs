@@ -1,10 +1,9 @@
 //! `advise` and `estimate`: how little of the model will do, and what is known without a time history.
 
-use crate::arguments::{argument, conditions, one_of, refused, result};
+use crate::arguments::{argument, conditions, one_of, refused, reject, result};
 use crate::interruptible::interruptible;
 use crate::record::RecordArgument;
 use crate::structure::PyStructure;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyString};
 use rocking::Detail;
@@ -44,8 +43,7 @@ pub fn advise<'py>(
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     if !(within > 0.0 && within < 1.0) {
-        let needed = "more than 0 and less than 1 is needed";
-        return Err(PyValueError::new_err(format!("within = {within} is out of range: {needed}")));
+        reject!("within = {within} is out of range: more than 0 and less than 1 is needed");
     }
     let criteria = of.map_or(Ok(Criterion::ALL.into()), criteria)?;
     let conditions = conditions(Detail::Auto, DEFAULT_TOLERANCE, duration, initial)?;

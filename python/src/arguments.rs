@@ -13,6 +13,12 @@ use rocking_sweep::plan::Conditions;
 use std::ffi::CString;
 use std::io;
 
+/// Returns the `ValueError` of these words.
+macro_rules! reject {
+    ($($text:tt)*) => { return Err(pyo3::exceptions::PyValueError::new_err(format!($($text)*))) };
+}
+pub(crate) use reject;
+
 const BOOLS: &str = "these are bools: numbers are needed";
 
 /// The `ValueError` that says why, or, if a file cannot be opened, what Python raises then.
@@ -66,8 +72,7 @@ pub mod argument {
 pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = array(name, value)?;
     if array.ndim() > 1 {
-        let shape = array.shape();
-        return Err(PyValueError::new_err(format!("{name} has the shape {shape:?}: one dimension is needed")));
+        reject!("{name} has the shape {:?}: one dimension is needed", array.shape());
     }
     array.to_vec().map_err(refused)
 }
@@ -76,10 +81,7 @@ pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
 pub fn matrix(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<Vec<f64>>> {
     let array = array(name, value)?;
     let &[_, columns] = array.shape() else {
-        return Err(PyValueError::new_err(format!(
-            "{name} has the shape {:?}: two dimensions are needed",
-            array.shape()
-        )));
+        reject!("{name} has the shape {:?}: two dimensions are needed", array.shape());
     };
     Ok(array.to_vec().map_err(refused)?.chunks(columns.max(1)).map(<[f64]>::to_vec).collect())
 }
@@ -166,7 +168,7 @@ pub fn conditions(
         let known = INITIAL_VALUES.iter().map(|of| of.name).chain(["detail", "tolerance", "duration", "condition"]);
         let place = one_of("argument or initial value", &name, known.zip(0..))?;
         let Some(Quantity { name, .. }) = INITIAL_VALUES.get(place) else {
-            return Err(PyValueError::new_err(format!("{name} is no argument of this function: see its help")));
+            reject!("{name} is no argument of this function: see its help");
         };
         state.set(place, if name.starts_with('u') { numbers(name, &value)? } else { vec![number(name, &value)?] });
     }

@@ -1,6 +1,6 @@
 //! The Python module: the same crates as the command line's, as Python's objects. The library computes; this crate reads
 //! arguments and gives results their form in Python.
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
+#![expect(clippy::too_many_arguments, reason = "keywords of Python")]
 
 mod advice;
 mod arguments;
@@ -11,10 +11,9 @@ mod structure;
 mod sweep;
 mod tables;
 
-use arguments::{one_of, refused, warn};
+use arguments::{one_of, refused, reject, warn};
 use fmu_export::{Contents, Library, Version};
 use interruptible::interruptible;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rocking_records::Reading;
 use rocking_report::output_files::OutputFiles;
@@ -25,19 +24,15 @@ use std::path::PathBuf;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::advice::{advise, estimate};
-    #[pymodule_export]
-    use super::export;
-    #[pymodule_export]
-    use super::record::{PyRecord, pulse};
-    #[pymodule_export]
-    use super::run::{PyRun, simulate};
-    #[pymodule_export]
-    use super::structure::{PyStructure, numbers_of, varied};
-    #[pymodule_export]
-    use super::sweep::{PyCurve, columns_of, design, exceeds, fragility, heading_of, overturning_map, sweep};
-    #[pymodule_export]
-    use super::tables::check_ground;
+    use super::{
+        advice::{advise, estimate},
+        export,
+        record::{PyRecord, pulse},
+        run::{PyRun, simulate},
+        structure::{PyStructure, numbers_of, varied},
+        sweep::{PyCurve, columns_of, design, exceeds, fragility, heading_of, overturning_map, sweep},
+        tables::check_ground,
+    };
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python has it")]
@@ -63,7 +58,6 @@ impl<'a, 'py> FromPyObject<'a, 'py> for ToPack {
 
 /// Writes the FMU to `target`: of `structure`, with `records` inside, of which it follows the first, with its vertical component.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 fn export(
     py: Python<'_>,
     target: PathBuf,
@@ -103,7 +97,7 @@ fn export(
     let mut records: Vec<_> = records.iter().map(contents).collect::<PyResult<_>>()?;
     if let Some(other) = records.iter().skip(1).position(|record| record.len() > 1) {
         let needed = "the FMU follows the first alone, and no other may have a vertical component";
-        return Err(PyValueError::new_err(format!("record {}: {needed}", other + 2)));
+        reject!("record {}: {needed}", other + 2);
     }
     let vertical = records.first_mut().filter(|first| first.len() > 1).and_then(Vec::pop);
     interruptible(py, move |_| -> anyhow::Result<()> {

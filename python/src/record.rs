@@ -1,11 +1,11 @@
 //! `Record`: a ground motion from arrays, a file or a formula.
 
-use crate::arguments::{argument, number, numbers, one_of, refused, warn};
+use crate::arguments::{argument, number, numbers, one_of, refused, reject, warn};
 use crate::interruptible::interruptible;
 use crate::structure::PyStructure;
 use anyhow::ensure;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
@@ -63,7 +63,7 @@ fn fixed(samples: Record, units: [Unit; 2]) -> PyResult<(Record, Unit)> {
     }
     if units.into_iter().any(is_of_g) {
         let needed = "one unit is needed; say unit, or scale one of the files";
-        return Err(PyValueError::new_err(format!("record_v is in {vertical} and file in {unit}: {needed}")));
+        reject!("record_v is in {vertical} and file in {unit}: {needed}");
     }
     Ok((each_in_m_s2(samples, units, G).map_err(refused)?, Unit::MetrePerSecondSquared))
 }
@@ -140,22 +140,21 @@ fn of_trace<'py>(
     given: &Bound<'py, PyAny>,
     unit: Option<Unit>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Unit, String)> {
-    let refused = |why: String| Err(PyValueError::new_err(why));
     let trace = match given.getattr("traces") {
         Ok(traces) if traces.len()? == 1 => traces.get_item(0)?,
         Ok(traces) => {
             let needed = "a Record has one: give one of them, such as Record(stream[0], unit=...)";
-            return refused(format!("the stream has {} traces, {}, and {needed}", traces.len()?, ids(&traces)?));
+            reject!("the stream has {} traces, {}, and {needed}", traces.len()?, ids(&traces)?);
         }
         Err(_) => given.clone(),
     };
     let (Ok(data), Ok(stats)) = (trace.getattr("data"), trace.getattr("stats")) else {
-        return refused(format!("a_g is needed beside time = {given:?}, unless that is a Trace or a Stream of ObsPy"));
+        reject!("a_g is needed beside time = {given:?}, unless that is a Trace or a Stream of ObsPy");
     };
     let title = trace.getattr("id")?.str()?.to_string();
     let Some(unit) = unit else {
         let needed = "say unit=, such as unit=\"m/s2\" after trace.remove_response(output=\"ACC\")";
-        return refused(format!("the trace {title} does not state the unit of its samples: {needed}"));
+        reject!("the trace {title} does not state the unit of its samples: {needed}");
     };
     Ok((stats.getattr("delta")?, data, unit, title))
 }
@@ -193,7 +192,6 @@ impl PyRecord {
 
     #[new]
     #[pyo3(signature = (time, a_g=None, a_v=None, *, unit=None, time_scale=1.0, scale=1.0, title=None))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn of_arrays(
         py: Python<'_>,
         time: &Bound<'_, PyAny>,
@@ -236,10 +234,7 @@ impl PyRecord {
             let samples = numbers(name, samples)?;
             let times: Vec<f64> = match number("dt", time) {
                 Ok(dt) if dt > 0.0 && dt.is_finite() => (0..samples.len()).map(|i| i as f64 * dt).collect(),
-                Ok(dt) => {
-                    let needed = "a finite number greater than 0 is needed";
-                    return Err(PyValueError::new_err(format!("dt = {dt} is out of range: {needed}")));
-                }
+                Ok(dt) => reject!("dt = {dt} is out of range: a finite number greater than 0 is needed"),
                 Err(_) => numbers("time", time)?,
             };
             Record::from_samples(title, times, samples).map_err(refused)
@@ -269,7 +264,6 @@ impl PyRecord {
     /// assumption about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, record_v=None, unit=None, dt=None, column=None, column_v=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn read(
         py: Python<'_>,
         file: PathBuf,
@@ -448,7 +442,6 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 #[pyo3(
     text_signature = "(shape, *, amplitude, frequency, cycles=None, phase=0.0, error=0.0001, structure=None, g=9.81)"
 )]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
     py: Python<'_>,
     shape: &Bound<'_, PyAny>,

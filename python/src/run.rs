@@ -1,11 +1,10 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
-use crate::arguments::{argument, conditions, numbers, refused, response, result};
+use crate::arguments::{argument, conditions, numbers, refused, reject, response, result};
 use crate::interruptible::interruptible;
 use crate::record::{PyRecord, RecordArgument};
 use crate::structure::{self, PyStructure};
 use numpy::PyArray1;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 use rocking::engine::{DEFAULT_TOLERANCE, motion::Work};
@@ -156,7 +155,7 @@ impl PyRun {
         let start = slf.get().found.start;
         if let Some(i) = times.iter().position(|time| !(*time >= start && time.is_finite())) {
             let needed = format!("a finite time from the start of the run on, {start} s, is needed");
-            return Err(PyValueError::new_err(format!("times[{i}] = {} s is out of range: {needed}", times[i])));
+            reject!("times[{i}] = {} s is out of range: {needed}", times[i]);
         }
         let SampledMotion { columns, phases, transitions } = {
             let slf = slf.clone_ref(py);
@@ -211,7 +210,7 @@ impl PyRun {
                 1 => "floor 1 alone".to_owned(),
                 floors => format!("floors 1 to {floors}"),
             };
-            return Err(PyValueError::new_err(format!("floor = {floor} is out of range: the structure has {has}")));
+            reject!("floor = {floor} is out of range: the structure has {has}");
         };
         let periods = periods.map_or_else(|| Ok(usual_periods()), |periods| numbers("periods", periods))?;
         let period = periods.clone();
@@ -307,7 +306,6 @@ impl PyRun {
 /// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
 /// Python go on meanwhile; the same inputs give the same bits.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 #[pyo3(signature = (structure, record=None, *, duration=None, detail=Detail::Auto, tolerance=DEFAULT_TOLERANCE, condition=false, **initial))]
 #[pyo3(
     text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, condition=False, **initial)"
@@ -327,9 +325,7 @@ pub fn simulate(
     let record = match (record, conditions.duration) {
         (Some(RecordArgument(record)), _) => record,
         (None, Some(duration)) => Py::new(py, PyRecord::in_si(rocking::run::record::Record::at_rest(duration))?)?,
-        (None, None) => {
-            return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
-        }
+        (None, None) => reject!("record and duration are missing: free vibration needs a duration"),
     };
     let ground = record.get().under(structure.get().of.base().g);
     let of = RunSetup { structure: structure.get().of.clone(), ground, conditions };

@@ -1,6 +1,6 @@
 //! `Structure`: parameters and what follows from them, by the names in the library's tables.
 
-use crate::arguments::{matrix, numbers, one_of, refused, response, warn};
+use crate::arguments::{matrix, numbers, one_of, refused, reject, response, warn};
 use crate::interruptible::interruptible;
 use crate::tables::{dict, keywords, known, rows, with_base};
 use anyhow::Context;
@@ -120,9 +120,7 @@ impl PyStructure {
         match (preset, of_many) {
             (None, Some(_)) => PyStructure::of_many(py, keywords),
             (Some(_), Some(name)) => {
-                let message =
-                    format!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
-                Err(PyValueError::new_err(message))
+                reject!("preset is a structure of one mass, and {name} makes one of many: leave out one of them");
             }
             (preset, None) => {
                 let base = preset.map(|preset| one_of("preset", preset, PRESETS)).transpose()?;
@@ -199,9 +197,7 @@ impl PyStructure {
         let (_, _, shapes) = take("shapes")?;
         for row in shapes.map_or(Ok(Vec::new()), |shapes| matrix("shapes", &shapes))? {
             if row.len() != modes.len() {
-                let (columns, needed) = (row.len(), modes.len());
-                let message = format!("shapes has {columns} columns and must have {needed}, one for each mode");
-                return Err(PyValueError::new_err(message));
+                reject!("shapes has {} columns and must have {}, one for each mode", row.len(), modes.len());
             }
             for (mode, phi) in modes.iter_mut().zip(row) {
                 let shape = mode.entry("shape").or_insert_with(|| Vec::<f64>::new().into());
@@ -232,7 +228,7 @@ impl PyStructure {
             return PyStructure::of(py, of_table(own, Some(&base)));
         }
         if new.contains_key("units") {
-            return Err(PyValueError::new_err("units: replace takes SI units, in which the other numbers are"));
+            reject!("units: replace takes SI units, in which the other numbers are");
         }
         own.remove("base").and_then(|base| base.try_into::<Table>().ok()).into_iter().for_each(|base| own.extend(base));
         for name in numbers.keys().extract::<Vec<String>>()? {
@@ -265,9 +261,7 @@ impl PyStructure {
     fn mode_table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let frame = &self.of;
         if frame.one().is_some() {
-            return Err(PyValueError::new_err(
-                "mode_table needs a structure of many masses; see f_fc, zeta_fc, chi, f_u",
-            ));
+            reject!("mode_table needs a structure of many masses; see f_fc, zeta_fc, chi, f_u");
         }
         let column =
             |of: &Derived<_>| (of.name, PyArray1::from_iter(py, frame.mode_table().map(|mode| (of.value)(&mode))));

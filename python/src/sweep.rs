@@ -1,13 +1,13 @@
 //! `sweep` and `fragility`: many runs on all cores, and what they say together.
 
-use crate::arguments::{argument, conditions, numbers, one_of, refused};
+use crate::arguments::{argument, conditions, numbers, one_of, refused, reject};
 use crate::interruptible::{FAULT, MOMENT, interruptible};
 use crate::record::{G, RecordArgument};
 use crate::structure::PyStructure;
 use FlexibleRocking::BUILD;
 use anyhow::ensure;
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
 use rocking::Detail;
@@ -40,7 +40,6 @@ type Columns<'py> = (Bound<'py, PyList>, Vec<(String, Bound<'py, PyAny>)>, Optio
 /// file at `path`. Returns the rows in that order, with a column of the measure `intensity`. `progress` is called with how
 /// many runs of how many are done.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn sweep<'py>(
     py: Python<'py>,
     structures: Vec<(String, Vec<Py<PyStructure>>)>,
@@ -126,8 +125,7 @@ fn motions<'a>(
     let motion = |(name, RecordArgument(record)): &(String, RecordArgument)| {
         let record = record.get();
         if let (true, Some(other)) = (record.is_in_g(), other) {
-            let needed = "a sweep has one g, in which its records are given";
-            return Err(PyValueError::new_err(format!("g = {other} m/s2 and g = {g} m/s2: {needed}")));
+            reject!("g = {other} m/s2 and g = {g} m/s2: a sweep has one g, in which its records are given");
         }
         NamedRecord::new(name, record.unscaled(g).map_err(refused)?, record.scale).map_err(refused)
     };
@@ -141,7 +139,6 @@ type FoundDesign =
 
 /// The value of the number `vary` of `structure` at which limits hold in a share of the runs, and the curve over its range.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn design(
     py: Python<'_>,
     structure: &PyStructure,
@@ -179,7 +176,6 @@ pub fn design(
 
 /// A map of `structure` under pulses as CSV: a row for each point, those of the grid first.
 #[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn overturning_map(
     py: Python<'_>,
     structure: &PyStructure,

@@ -1,6 +1,6 @@
 //! The tables of the file of a structure, from the keywords of Python and back.
 
-use crate::arguments::{integer, matrix, number, numbers, refused};
+use crate::arguments::{integer, matrix, number, numbers, refused, reject};
 use anyhow::anyhow;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -81,15 +81,13 @@ pub fn rows(columns: &[(&str, &str, Option<Bound<'_, PyAny>>)], of: &str) -> PyR
         let column = numbers(name, column)?;
         rows.resize(if rows.is_empty() { column.len() } else { rows.len() }, Table::new());
         if column.len() != rows.len() {
-            let needed = format!("{name} has {} numbers and must have {}, one for each {of}", column.len(), rows.len());
-            return Err(PyValueError::new_err(needed));
+            reject!("{name} has {} numbers and must have {}, one for each {of}", column.len(), rows.len());
         }
         rows.iter_mut().zip(column).for_each(|(row, number)| drop(row.insert((*key).to_owned(), number.into())));
     }
     Ok(rows)
 }
 
-/// The `table` as a dict.
 pub fn dict<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     let text = serde_json::to_string(table).map_err(refused)?; // which keeps every bit
     Ok(py.import("json")?.call_method1("loads", (text,))?.cast_into()?)

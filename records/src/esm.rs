@@ -37,7 +37,6 @@ fn is_series(line: &str) -> bool {
     line.starts_with(SERIES) && line.contains("acceleration")
 }
 
-/// The samples of ESM after its header.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let is_key =
         |line: &str| line.split_once(':').is_some_and(|(key, _)| number(key).is_none()) || line.trim().is_empty();

@@ -32,7 +32,6 @@ pub use unit::Unit;
 
 /// A layout of published files.
 pub struct Format {
-    /// Its name.
     pub name: &'static str,
     /// The statement of the unit.
     pub unit: &'static str,
@@ -102,7 +101,6 @@ const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
 /// Most steps, of their mean, between two samples.
 const LONGEST_GAP: f64 = 5.0;
 
-/// Why the reader rejects a file.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
     /// The system cannot open or read the file at this path.
@@ -111,23 +109,19 @@ pub enum RecordError {
     /// The reason: the path is no file, the file is too large, or an option is out of range.
     #[error("{0}")]
     Refused(String),
-    /// A line contradicts the format.
     #[error("{}, line {line}: {problem}", path.display())]
     Malformed {
-        /// The file.
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
         /// The content that was found, and the content that is needed.
         problem: String,
-        /// The option that makes the file readable.
         remedy: Option<Remedy>,
     },
 }
 
 /// The option of [`Reading`] that makes a file readable, which [`Remedy::advice`] says in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum Remedy {
     IgnoreCount,
     Step,

@@ -38,9 +38,7 @@ pub enum Column {
 pub struct Origin {
     /// Name of its layout: one of [`FORMATS`](crate::FORMATS), or `table`.
     pub format: &'static str,
-    /// Unit of the accelerations in the file.
     pub unit: Unit,
-    /// Origin of the unit.
     pub unit_from: UnitFrom,
     /// Other findings and assumptions, such as the column and the number of lines of headings.
     pub remarks: Vec<String>,
@@ -83,10 +81,8 @@ pub fn steps(record: &Record) -> String {
     if least == most { format!("step {least} s") } else { format!("steps of {least} to {most} s") }
 }
 
-/// Origin of the unit of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitFrom {
-    /// The file.
     File,
     /// The user, if the file states no unit.
     User,

@@ -3,9 +3,7 @@
 use serde::Deserialize;
 use std::{fmt, iter};
 
-/// Unit of the accelerations of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[allow(missing_docs)] // the names say what they are
 pub enum Unit {
     #[serde(rename = "g")]
     G,

@@ -45,23 +45,19 @@ pub struct LevelAdvice {
     pub overturned: Option<bool>,
     /// Whether it overturns, or not, as in the reference; None if the structure still rocks at the end of the reference.
     is_right_about_overturning: Option<bool>,
-    /// Steps and right-hand-side evaluations.
     #[serde(flatten)]
     pub work: Work,
     /// The cost as a multiple of the cost of `auto`; None if `auto` cannot do the run.
     #[serde(rename = "cost_of_auto")]
     pub cost: Option<f64>,
-    /// Whether it is the advised level.
     advised: bool,
     #[serde(flatten, serialize_with = "by_name")]
     peaks: Vec<NamedPeak>,
     /// The level, and how many modes it keeps.
     #[serde(skip)]
     pub choice: Choice,
-    /// Number of transitions.
     #[serde(skip)]
     pub transitions: u64,
-    /// Whether the errors are allowed.
     #[serde(skip)]
     is_allowed: bool,
 }

@@ -12,7 +12,6 @@ use rocking::{Detail, Structure};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::{self, Write};
 
-/// The parameters of one mass.
 pub fn given(structure: &Structure) -> Vec<NamedValue> {
     let given =
         structure.description().filter(|of| of.many.is_none()).into_iter().flat_map(Description::own_parameters);

@@ -12,7 +12,6 @@ pub const NAME: &str = "standard input";
 
 static IS_READ: AtomicBool = AtomicBool::new(false);
 
-/// Whether `path` stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -54,7 +53,6 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The text of the file at `path`, or of standard input.
 pub fn text(path: &Path) -> anyhow::Result<String> {
     String::from_utf8(read(path)?).context("it is not text in UTF-8")
 }

@@ -1,6 +1,5 @@
 //! Reports on a structure and its runs: words for people, rows for programs. Every door reads records, writes files and shows
 //! results through this crate.
-#![allow(non_snake_case)] // H, V_t, M_t: the paper's own letters
 
 pub mod advice;
 pub mod describe;

@@ -26,12 +26,10 @@ pub struct OutputFile {
 const READ: &str = "toml";
 
 impl OutputFiles {
-    /// The files of a command that reads `inputs`.
     pub fn of_inputs<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> OutputFiles {
         OutputFiles { inputs: inputs.into_iter().map(Path::to_owned).collect(), outputs: Vec::new() }
     }
 
-    /// Adds a file that the command reads.
     pub fn add_input(&mut self, path: &Path) {
         self.inputs.push(path.into());
     }
@@ -66,13 +64,11 @@ fn place(path: &Path) -> anyhow::Result<PathBuf> {
     path.canonicalize().or_else(|_| anew()).with_context(|| shown.to_string())
 }
 
-/// The folder of the file at `path`.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 impl OutputFile {
-    /// Standard output.
     pub fn standard_output() -> OutputFile {
         OutputFile { path: "-".into(), target: "-".into() }
     }
@@ -82,7 +78,6 @@ impl OutputFile {
         &self.path
     }
 
-    /// Writes the whole `content`.
     pub fn write(self, content: &[u8]) -> anyhow::Result<()> {
         if input::is_standard(&self.path) {
             let written = stdout().write_all(content).and_then(|()| stdout().flush());

@@ -16,7 +16,6 @@ const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 const MOST_VALUES: usize = 1_800_000;
 
 impl RunSetup {
-    /// The page that shows the run.
     pub fn page(&self) -> Result<String, RunError> {
         let is_small = |scene: &Result<ShownScene, RunError>| match scene {
             Ok(scene) => scene.values() <= MOST_VALUES,
@@ -78,7 +77,6 @@ fn quantities(structure: &Structure) -> Vec<ShownQuantity> {
     [quantity(GROUND.symbol, GROUND, "m/s2", None)].into_iter().chain(outputs).collect()
 }
 
-/// The structure as it is drawn.
 pub fn sizes(structure: &Structure) -> Sizes {
     let (base, shown) = (structure.base(), Output::with_peak(structure));
     let ties = Output::OF_TIES.into_iter().zip([0.0, base.ties.xi_d, -base.ties.xi_d]);

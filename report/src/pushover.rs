@@ -6,7 +6,6 @@ use rocking::digits::significant;
 use rocking::estimates::pushover::{Equilibrium, Pushover, too_soft};
 use serde::Serialize;
 
-/// Headings of the curve.
 pub const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
 
 /// A corner of the curve, in SI units.
@@ -33,7 +32,6 @@ pub fn corners(pushed: &Pushover) -> Result<Vec<Corner>, Refused> {
 }
 
 impl Corner {
-    /// The corner in a line for people.
     pub fn line(&self) -> String {
         let &Corner { name, delta_t, theta, P, M } = self;
         let ([theta, delta_t], [force, moment]) = (
@@ -44,7 +42,6 @@ impl Corner {
     }
 }
 
-/// A line of the curve.
 pub fn line(at: &Equilibrium) -> impl Serialize + use<> {
     let &Equilibrium { phase, theta, u, delta_t, force, moment } = at;
     (phase.name(), theta, u, delta_t, force, moment)

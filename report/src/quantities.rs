@@ -7,7 +7,6 @@ use serde::{Serialize, Serializer};
 
 /// One value, its unit (`1` for a ratio) and the equation of the paper that defines it.
 #[derive(Clone, Serialize)]
-#[allow(missing_docs)]
 pub struct NamedValue {
     pub name: String,
     pub value: f64,
@@ -17,7 +16,6 @@ pub struct NamedValue {
 }
 
 impl NamedValue {
-    /// A value of a fixed name.
     pub fn new(name: &str, value: f64, unit: &'static str, equation: &'static str, description: &str) -> NamedValue {
         NamedValue { name: name.into(), value, unit, equation, description: description.into() }
     }

@@ -18,7 +18,6 @@ use rocking_sweep::{plan::Conditions, with_run};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Name and unit of a quantity.
 pub type Named = (String, &'static str);
 
 /// Names and units of the peaks of a floor, and of the storey below the floor, after its height.
@@ -38,17 +37,14 @@ pub fn usual_periods() -> Vec<f64> {
 /// A structure under a ground motion, and how the engine follows it.
 #[derive(Clone)]
 pub struct RunSetup {
-    /// The structure.
     pub structure: Structure,
     /// The record as it shakes the structure.
     pub ground: Arc<Record>,
-    /// Initial state, level of detail, tolerance and duration.
     pub conditions: Conditions,
 }
 
 /// The results of a run; instants are in s.
 #[derive(Clone, Serialize)]
-#[allow(missing_docs)]
 pub struct RunReport {
     pub start: f64,
     pub end: f64,
@@ -67,14 +63,11 @@ pub struct RunReport {
     pub(crate) taken: Option<Dissipated>,
     pub(crate) first_uplift: Option<f64>,
     pub(crate) first_impact: Option<f64>,
-    /// Number of transitions.
     pub transitions: u64,
     #[serde(flatten)]
     pub work: Work,
-    /// Every transition in the order of time.
     #[serde(skip)]
     pub events: Vec<Event>,
-    /// Phase at the end.
     #[serde(skip)]
     pub(crate) phase: Phase,
     /// Right-hand-side evaluations that the search for the peaks took, if it counts them.
@@ -90,7 +83,6 @@ pub struct RunReport {
 
 /// The largest magnitude of a quantity, and the first instant that has it, s.
 #[derive(Clone, Serialize)]
-#[allow(missing_docs)]
 pub struct NamedPeak {
     pub name: String,
     #[serde(rename = "peak")]
@@ -102,12 +94,10 @@ pub struct NamedPeak {
     pub digits: Option<u8>,
 }
 
-/// How sure the results of a run are.
 #[derive(Clone, Copy, Serialize)]
 pub struct SureDigits {
     /// Sure digits of the peak of θ or, if the structure overturns, of the time until then, as in the rows of a sweep.
     pub digits: u8,
-    /// Sure digits of whether the structure overturns.
     pub overturning_digits: u8,
     /// The least relative change of the input, of those tried, that decides otherwise.
     pub overturning_change: Option<f64>,
@@ -123,7 +113,6 @@ pub(crate) struct Dissipated {
 
 /// A transition at a time, s.
 #[derive(Clone)]
-#[allow(missing_docs)]
 pub struct Event {
     pub time: f64,
     pub kind: TransitionKind,
@@ -131,18 +120,15 @@ pub struct Event {
     pub states: [Vec<f64>; 2],
 }
 
-/// A motion at instants.
 pub struct SampledMotion {
     /// The numbers, in the order of [`RunSetup::columns`].
     pub columns: Vec<Vec<f64>>,
     /// Positions in [`Phase::SHOWN`].
     pub phases: Vec<u8>,
-    /// Numbers of transitions so far.
     pub transitions: Vec<u64>,
 }
 
 /// A run as points that straight lines join, at times in s.
-#[allow(missing_docs)]
 pub struct MotionCurve {
     pub found: RunReport,
     pub times: Vec<f64>,
@@ -151,7 +137,6 @@ pub struct MotionCurve {
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
-/// A line of the transitions.
 pub fn event_line(event: &Event) -> impl Serialize {
     (event.time, event.kind.name(), &event.states)
 }
@@ -204,7 +189,6 @@ impl RunSetup {
         with_run!(self.conditions, self.structure, &self.ground, run => found(&run.on_fixed_base(end), None, &mut ()))?
     }
 
-    /// The findings about the model within `limits`.
     pub fn validity(&self, limits: Limits, watch: &mut impl Watcher) -> Result<Findings, RunError> {
         with_run!(self.conditions, self.structure, &self.ground, run => {
             let mut validity = run.validity_watch(limits)?;
@@ -333,7 +317,6 @@ impl RunSetup {
 }
 
 impl RunReport {
-    /// The peak of the quantity called `name`.
     pub fn peak(&self, name: &str) -> Option<Peak> {
         let peak = self.peaks.iter().find(|peak| peak.name == name)?;
         Some(Peak { magnitude: peak.magnitude, time: peak.time })
@@ -341,7 +324,6 @@ impl RunReport {
 }
 
 impl NamedPeak {
-    /// The `peaks` of `structure`.
     pub(crate) fn all(structure: &Structure, peaks: &Peaks) -> Vec<NamedPeak> {
         let peak = |of: Output| Some(NamedPeak::new(of.name(structure), of.unit(), peaks.of(of)?));
         Output::with_peak(structure).into_iter().filter_map(peak).collect()
@@ -357,7 +339,6 @@ pub(crate) fn symbol(name: &str) -> &str {
     name.split('[').next().unwrap_or(name)
 }
 
-/// The results of `run`.
 fn found<Q: Runs>(run: &Run<Q>, limits: Option<Limits>, watch: &mut dyn Watch<Q>) -> Result<RunReport, RunError> {
     let mut transitions = Vec::new();
     let mut see = |transition: &Transition<Q>| transitions.push(*transition);

@@ -10,7 +10,6 @@ use rocking::{Phase, Side};
 use serde::Serialize;
 use std::fmt::{self, Write};
 
-/// The summary for programs.
 #[derive(Serialize)]
 pub struct ProgramSummary<'a, Cause> {
     #[serde(flatten)]

@@ -39,9 +39,6 @@ pub(crate) fn line<Q: Runs>(sample: &Sample<Q>, outputs: Vec<f64>) -> Line {
     let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
     let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
     let after = [R_h, R_v, R_m, I_h, I_v, I_m, load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
-    Line(
-        [&[motion.time, load.a_g], &outputs[..], &after].concat(),
-        motion.phase.shown(motion.state.theta),
-        motion.transitions,
-    )
+    let numbers = [&[motion.time, load.a_g], &outputs[..], &after].concat();
+    Line(numbers, motion.phase.shown(motion.state.theta), motion.transitions)
 }

@@ -19,7 +19,6 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
 
 /// The worst value in a run of one of the [`ASSUMPTIONS`], and its instant (s), for programs.
 #[derive(Serialize)]
-#[allow(missing_docs)]
 pub struct Beyond {
     pub name: &'static str,
     pub value: PrintedNumber,
@@ -35,14 +34,8 @@ pub struct Beyond {
 pub fn rows(found: &Findings, limits: &Limits) -> Vec<Beyond> {
     let row = |(assumption, worst): (&Assumption, &Worst)| {
         let Worst { value, time, first_beyond, beyond } = *worst;
-        Beyond {
-            name: assumption.name,
-            value: PrintedNumber(value),
-            time,
-            limit: (assumption.limit)(limits),
-            first_beyond,
-            beyond,
-        }
+        let (name, value, limit) = (assumption.name, PrintedNumber(value), (assumption.limit)(limits));
+        Beyond { name, value, time, limit, first_beyond, beyond }
     };
     ASSUMPTIONS.iter().zip(&found.worst).map(row).collect()
 }

@@ -1,8 +1,7 @@
 //! The equations between two transitions, with their evaluations counted.
 
 use nalgebra::Vector2;
-use rocking::levels::full_contact;
-use rocking::levels::nonlinear;
+use rocking::levels::{full_contact, nonlinear};
 use rocking::{Dissipators, Load, OneMass, Phase, Ramp, State};
 use std::cell::Cell;
 

@@ -1,5 +1,4 @@
 //! Speed against accuracy, limits of stability and a gallery of failures, for the flexible rocking structure.
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 pub mod engine;
 pub mod equations;

@@ -42,7 +42,6 @@ pub struct Diagram {
     pub curves: Vec<MethodCurve>,
 }
 
-/// How far a sweep goes.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyLimits {
     pub run: f64,      // no finer setting after a run of this many seconds

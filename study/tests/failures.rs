@@ -1,5 +1,4 @@
 //! The failures are those that the gallery says.
-#![allow(non_snake_case)]
 
 mod synthetic;
 

@@ -23,13 +23,11 @@ pub const MAX_REFINEMENTS: u32 = 8;
 /// Parts of the step between two neighbours that do not agree.
 const PARTS: usize = 8;
 
-/// What is sought.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Goal {
     /// Name of the number, as in [`Population::vary`].
     pub vary: String,
-    /// First and last value.
     pub between: [f64; 2],
     /// Such as `theta <= 0.5 %`, or `stands`; all of them must hold.
     pub limit: Vec<String>,
@@ -53,24 +51,17 @@ impl Default for Goal {
 /// What is sought of a structure, and under which runs.
 #[derive(Clone, Debug)]
 pub struct Design {
-    /// What is sought.
     pub sought: Goal,
     /// The structure, whose own value of the number does not matter.
     pub structure: Structure,
-    /// The ground motions.
     pub motions: Vec<NamedRecord>,
-    /// Factors on all of them.
     pub scales: Vec<f64>,
-    /// Conditions of all runs.
     pub conditions: Conditions,
 }
 
-/// The runs of one value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DesignPoint {
-    /// The value.
     pub value: f64,
-    /// Whether the limits hold.
     pub holds: bool,
     /// Part of the runs that is within all limits.
     pub within: f64,
@@ -90,7 +81,6 @@ pub struct Designed {
     pub holds: Vec<[f64; 2]>,
     /// Neighbours of which one holds.
     pub crossings: Vec<[f64; 2]>,
-    /// All of this in words.
     pub sentence: String,
 }
 
@@ -189,7 +179,6 @@ impl Design {
         Ok(values.into_iter().zip(runs).map(of_value).collect())
     }
 
-    /// Unit of the number that varies.
     pub fn unit(&self) -> &'static str {
         let all = self.structure.description().map_or_else(Vec::new, Description::numbers);
         all.iter().find(|of| of.name == self.sought.vary).map_or("1", |of| of.unit)
@@ -253,16 +242,9 @@ mod tests {
 
     fn design(vary: &str, between: [f64; 2], limits: &[&str], share: f64) -> Design {
         let records = [("a", 0.5, 0.5), ("b", 0.7, 0.6), ("c", 1.0, 0.45), ("d", 0.4, 0.9), ("e", 1.2, 0.5)];
+        let (vary, limit) = (vary.into(), limits.iter().map(|of| (*of).to_owned()).collect());
         Design {
-            sought: Goal {
-                vary: vary.into(),
-                between,
-                limit: limits.iter().map(|of| (*of).to_owned()).collect(),
-                share,
-                count: 9,
-                refine: 2,
-                ..Goal::default()
-            },
+            sought: Goal { vary, between, limit, share, count: 9, refine: 2, ..Goal::default() },
             structure: Structure::new(Parameters::MCMANUS).unwrap(),
             motions: records.map(|(name, period, amplitude)| sine(name, period, amplitude)).into(),
             scales: vec![1.0],

@@ -15,24 +15,19 @@ const MOST_BINS: usize = 20;
 /// Intensities with fewer runs than this each, on average, share bins.
 const FEWEST_RUNS: usize = 3;
 
-/// The runs of one population, counted.
 #[derive(Clone, Debug)]
 pub struct Exceedances {
-    /// The population's name.
     pub population: String,
     /// Runs of about the same intensity, by intensity, without the failed runs.
     pub bins: Vec<Bin>,
     /// Fragilities of overturning, then of the limits.
     pub fragilities: Vec<Fragility>,
-    /// Runs that failed.
     pub failed: usize,
-    /// Runs at whose end the structure still rocked.
     pub still_rocking: usize,
 }
 
 /// Runs of about the same intensity: the smallest, the geometric mean and the largest of their intensities, and how many there are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct Bin {
     pub lowest: f64,
     pub mean: f64,
@@ -43,20 +38,16 @@ pub struct Bin {
 /// How often one limit is exceeded.
 #[derive(Clone, Debug)]
 pub struct Fragility {
-    /// The limit.
     pub limit: Limit,
-    /// Bin by bin.
     pub tallies: Vec<Tally>,
     /// Against the intensity of the single run.
     pub curve: Result<FragilityCurve, Refused>,
 }
 
-/// Runs of a bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Tally {
     /// Number of runs that certainly exceed the limit, or certainly do not.
     pub known: usize,
-    /// Number of runs that exceed the limit.
     pub exceedances: usize,
 }
 

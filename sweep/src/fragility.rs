@@ -57,7 +57,6 @@ pub struct FragilityCurve {
     pub certainty: Option<Certainty>,
 }
 
-/// Uncertainty of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certainty {
     /// Covariance of a and b in P = Φ(a + b ln(x/x_m)).

@@ -1,7 +1,5 @@
 //! Many runs: plans of cases, maps over pulses, what became of each run, how often limits are exceeded.
 
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
-
 pub mod condition;
 pub mod design;
 pub mod exceedances;
@@ -18,7 +16,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 pub use rocking::Refused;
 use rocking::structure::quantity::ensure;
 
-/// Most runs at a time.
 const MOST_THREADS: i64 = 1024;
 
 /// The threads that do `threads` runs at a time; 0 is one per core.

@@ -24,13 +24,11 @@ pub const PARTS: u32 = 1 << MAX_REFINEMENTS;
 /// How often a grid's steps can be halved.
 pub const MAX_REFINEMENTS: u32 = 8;
 
-/// Most points of a grid.
 pub const MAX_POINTS: usize = 10_000_000;
 
 /// Values that a pulse's frequency, or its amplitude, goes through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The values of the grid.
     pub values: Vec<f64>,
     /// Whether they are spaced evenly in their logarithms between two of them, where a refinement looks.
     pub is_log: bool,
@@ -38,7 +36,6 @@ pub struct Axis {
 
 /// One structure under one shape of pulse, at every point of which there is such a pulse.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)]
 pub struct Map {
     pub structure: Structure,
     /// But for its frequency and its amplitude.
@@ -50,21 +47,17 @@ pub struct Map {
     /// Whether the axes are in units of the structure.
     pub is_dimensionless: bool,
     pub detail: Detail,
-    /// Relative tolerance of the results.
     pub tolerance: f64,
-    /// Whether each point's condition is found.
     pub finds_condition: bool,
 }
 
 /// Position of a point along amplitudes and frequencies, in 1/256 of the steps of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
 pub struct GridPlace {
     pub amplitude: u32,
     pub frequency: u32,
 }
 
-/// Fate of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Fate {
@@ -85,7 +78,6 @@ pub enum Fate {
 /// Class of a point: the fate, and for a structure that overturns the number of impacts before, 2 for more than one.
 pub type Class = (Fate, u64);
 
-/// Names of the classes, in their order.
 pub const CLASSES: [(Class, &str); 7] = [
     ((Fate::NoUplift, 0), "no uplift"),
     ((Fate::Stands, 0), "rocks and stands"),
@@ -96,7 +88,6 @@ pub const CLASSES: [(Class, &str); 7] = [
     ((Fate::Failed, 0), "failed"),
 ];
 
-/// Headings of [`Map::row`].
 pub const HEADINGS: [&str; 12] = [
     "refinement",
     "frequency[Hz]",
@@ -112,16 +103,13 @@ pub const HEADINGS: [&str; 12] = [
     "reason",
 ];
 
-/// A point that has been run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MapPoint {
-    /// Fate of the structure.
     pub fate: Fate,
     /// Number of impacts and landings.
     pub impacts: u64,
     /// The largest |θ|/α_cg, exact.
     pub theta: f64,
-    /// Transitions of every kind.
     pub transitions: u64,
     /// When the run ended, s after the start of the pulse.
     pub end: f64,
@@ -166,7 +154,6 @@ impl GridPlace {
 }
 
 impl MapPoint {
-    /// Class of the point.
     pub fn class(&self) -> Class {
         (self.fate, if self.fate == Fate::Overturns { self.impacts.min(2) } else { 0 })
     }
@@ -238,7 +225,6 @@ impl Map {
         Ok(Map { detail, tolerance, finds_condition, ..self })
     }
 
-    /// The pulse at `place`.
     pub fn pulse(&self, place: GridPlace) -> Pulse {
         let [frequency, amplitude] = place.steps();
         let (frequency, amplitude) = (self.frequency.at(frequency), self.amplitude.at(amplitude));
@@ -266,7 +252,6 @@ impl Map {
         ground
     }
 
-    /// Runs the structure under the pulse at `place`.
     pub fn run(&self, place: GridPlace) -> MapPoint {
         let mut run = None;
         self.run_each(&[place], |_, point| {

@@ -14,23 +14,19 @@ use smallvec::{SmallVec, smallvec};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
-/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The run reached its end.
     Ended(Summary),
     /// The run could not be continued: the fate of the structure is unknown.
     Failed {
         /// Time of the failure, s.
         time: f64,
-        /// Why.
         reason: String,
     },
 }
 
 /// Results of a run that reached its end.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Summary {
     pub ending: Ending,
     /// Time of the end, s.
@@ -39,7 +35,6 @@ pub struct Summary {
     pub peaks: PeakMagnitudes,
     pub transitions: u64,
     pub steps: u64,
-    /// Right-hand-side evaluations.
     pub evaluations: u64,
     /// Sure digits of the run, if they are found: [`digits_of_run`](crate::condition::digits_of_run).
     pub digits: Option<u8>,
@@ -125,7 +120,6 @@ impl MeasurePlaces {
     }
 }
 
-/// Limit that a run can exceed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Limit {
     /// The structure stands.

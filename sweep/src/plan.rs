@@ -80,7 +80,6 @@ pub fn values_of(structure: &Structure, numbers: &[Measure]) -> Vec<f64> {
 /// Structures that count together: one in which some numbers vary, in every combination, or several.
 #[derive(Clone, Debug)]
 pub struct Population {
-    /// Name of the population.
     pub name: String,
     /// One or more.
     bases: Vec<Structure>,
@@ -88,10 +87,8 @@ pub struct Population {
     varying: Vec<(String, Vec<f64>)>,
 }
 
-/// A ground motion record under a name.
 #[derive(Clone, Debug)]
 pub struct NamedRecord {
-    /// Name of the ground motion.
     pub name: String,
     /// Samples before they are scaled.
     pub record: Record,
@@ -106,14 +103,11 @@ pub struct NamedRecord {
     duration: f64,
 }
 
-/// Conditions of all runs of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conditions {
     /// State at the first sample, with u and u̇ of each floor, or of none.
     pub initial: State<Vec<f64>>,
-    /// Level of detail.
     pub detail: Detail,
-    /// Relative tolerance of the results.
     pub tolerance: f64,
     /// Time from the first sample to the end of a run, s; without it a run goes on until nothing more can happen.
     pub duration: Option<f64>,
@@ -134,22 +128,15 @@ macro_rules! with_run {
 
 impl Default for Conditions {
     fn default() -> Conditions {
-        Conditions {
-            initial: State::default(),
-            detail: Detail::default(),
-            tolerance: DEFAULT_TOLERANCE,
-            duration: None,
-            finds_condition: false,
-        }
+        let (initial, detail, tolerance) = (State::default(), Detail::default(), DEFAULT_TOLERANCE);
+        Conditions { initial, detail, tolerance, duration: None, finds_condition: false }
     }
 }
 
 /// Populations × ground motions × scale factors.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The populations.
     pub populations: Vec<Population>,
-    /// The ground motions.
     pub motions: Vec<NamedRecord>,
     scales: Vec<f64>,
     /// Conditions of all runs, which have been checked.
@@ -176,17 +163,14 @@ struct Spectral {
     at: OnceLock<(f64, f64, f64)>,
 }
 
-/// One run of a plan.
 #[derive(Clone, Debug)]
 pub struct Case<'a> {
     plan: &'a Plan,
     /// Number of the run in the plan, from 0.
     pub index: usize,
-    /// Population of the structure.
     pub population: &'a Population,
     /// Number of the structure in its population, from 0.
     member: usize,
-    /// The structure.
     pub structure: Structure,
     layout: &'a MeasurePlaces,
     /// The ground motion before it is scaled.
@@ -399,7 +383,6 @@ impl Plan {
         [structures, self.motions.len(), self.scales.len()]
     }
 
-    /// How many runs there are.
     #[expect(clippy::len_without_is_empty, reason = "a plan is never empty")]
     pub fn len(&self) -> usize {
         self.size().into_iter().product()
@@ -410,7 +393,6 @@ impl Plan {
         self.cases_of([index]).next().expect("there is one")
     }
 
-    /// Every run, in this order.
     pub fn cases(&self) -> impl Iterator<Item = Case<'_>> {
         self.cases_of(0..self.len())
     }
@@ -501,7 +483,6 @@ fn together<Q: Runs>(cases: Vec<((usize, &Case), Structure)>, done: &mut impl Fn
 }
 
 impl Case<'_> {
-    /// Does it.
     pub fn outcome(&self) -> Outcome {
         let found = with_run!(self.conditions(), self.structure, &self.ground(), run => self.outcome_of(&run, run.found(&mut ())));
         found.expect(CHECKED)
@@ -589,7 +570,6 @@ impl Case<'_> {
     }
 }
 
-/// The intensity measure called `name`.
 pub fn measure(name: &str) -> Result<IntensityMeasure, Refused> {
     let is_unknown = || {
         let spectral = ["S_a(1 s)", "S_a(1 s, 2 %)"].map(Cow::from);

@@ -24,7 +24,6 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2, TAU};
 
 /// A pulse. [`PULSE`] says what its numbers are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[allow(missing_docs)]
 pub struct Pulse {
     pub shape: Shape,
     pub amplitude: f64,
@@ -36,7 +35,6 @@ pub struct Pulse {
     pub error: f64,
 }
 
-/// The numbers of a pulse, with ranges.
 pub const PULSE: [Quantity<Pulse>; 5] = [
     quantity!(amplitude ["m/s2"] 1e-9, 1e9, "amplitude of the ground acceleration"),
     quantity!(frequency ["Hz"] 1e-6, 1e6, "frequency of the pulse"),
@@ -64,7 +62,6 @@ fn beta() -> f64 {
 /// chosen, and the ground acceleration with its source.
 macro_rules! shapes {
     ($($shape:ident $name:literal $cycles:literal $has_choice:literal $definition:literal;)*) => {
-        /// The shape of a pulse.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
         pub enum Shape {$(
             #[doc = $definition]
@@ -73,25 +70,20 @@ macro_rules! shapes {
         )*}
 
         impl Shape {
-            /// All of them, in the order of the table.
             pub const ALL: [Shape; 6] = [$(Shape::$shape),*];
 
-            /// Its name in files and on the command line.
             pub const fn name(self) -> &'static str {
                 match self { $(Shape::$shape => $name),* }
             }
 
-            /// Its ground acceleration, and where that is from.
             pub const fn definition(self) -> &'static str {
                 match self { $(Shape::$shape => $definition),* }
             }
 
-            /// How many periods it has unless something else is asked for.
             pub const fn cycles(self) -> f64 {
                 match self { $(Shape::$shape => $cycles),* }
             }
 
-            /// Whether cycles and phase can be chosen.
             pub const fn has_choice(self) -> bool {
                 match self { $(Shape::$shape => $has_choice),* }
             }
@@ -136,7 +128,6 @@ impl Pulse {
         }
     }
 
-    /// Whether there is such a pulse.
     pub fn check(&self) -> Result<(), Refused> {
         let &Pulse { shape, cycles, phase, error, .. } = self;
         PULSE.iter().try_for_each(|quantity| quantity.check((quantity.get)(self))).map_err(Refused::by)?;

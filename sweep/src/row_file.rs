@@ -28,7 +28,6 @@ const MOST_TOGETHER: usize = 128;
 /// How often each thread takes runs, if there are few.
 const SHARES: usize = 4;
 
-/// An open file, to which rows can be added.
 #[derive(Debug)]
 pub struct RowFile {
     path: PathBuf,
@@ -39,7 +38,6 @@ pub struct RowFile {
 /// Contents of the rows in the file, each a `T` by its key, until they are taken.
 pub type Known<T> = HashMap<Uuid, T>;
 
-/// The program that does the runs.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// Identifies all of the program that a run depends on.
@@ -66,14 +64,12 @@ impl Digest {
         Digest(Sha1::from(namespace))
     }
 
-    /// Adds `of`.
     pub fn and(mut self, of: &impl Serialize) -> Digest {
         let bytes = postcard::to_extend(of, Vec::with_capacity(1024)).expect("numbers and slices can be serialized");
         self.0.update(&bytes);
         self
     }
 
-    /// The number.
     pub fn uuid(&self) -> Uuid {
         let bytes = self.0.digest().bytes();
         Builder::from_sha1_bytes(*bytes.first_chunk().expect("there are 20")).into_uuid()
@@ -172,7 +168,6 @@ pub fn do_runs<T: Sync, R>(
     })
 }
 
-/// The heading of a column of numbers.
 pub fn heading(name: &str, unit: &str) -> String {
     if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
 }

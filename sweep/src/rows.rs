@@ -41,7 +41,6 @@ pub struct Sweep<'a> {
     pub others: usize,
 }
 
-/// A run that is done.
 #[derive(Debug)]
 struct RunDone {
     outcome: Outcome,
@@ -49,7 +48,6 @@ struct RunDone {
     beyond: Box<[f64]>,
 }
 
-/// One value of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Cell<'a> {
     Text(&'a str),
@@ -132,7 +130,6 @@ impl<'a> Sweep<'a> {
         Ok(Sweep { plan, program, validity, keys, digests, done, file, others: others.len() })
     }
 
-    /// The runs that are not done.
     pub fn missing(&self) -> Vec<usize> {
         (0..self.plan.len()).filter(|index| self.done[*index].get().is_none()).collect()
     }
@@ -291,7 +288,6 @@ impl RowColumn {
     }
 }
 
-/// Stands for the samples of a record.
 fn digest_of(record: &Record) -> Uuid {
     let samples = Digest::new(&Uuid::NAMESPACE_OID).and(&(record.times(), record.acceleration()));
     match (record.vertical(), record.force()) {

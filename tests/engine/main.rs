@@ -1,5 +1,4 @@
 //! The engine from outside, as one program: linking one takes less time than linking one for each file.
-#![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 mod common;
 mod curves;

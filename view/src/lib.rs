@@ -1,11 +1,9 @@
 //! A run as a page that shows the structure in motion, one file that needs nothing else, and as what such a page draws.
-#![allow(non_snake_case)] // P_t, k_t
 
 use rocking::mechanics::shown::Legend;
 use rocking::run::Ending;
 use serde::Serialize;
 
-/// The style of a page with [`MOTION`].
 pub const STYLE: &str = include_str!("view.css");
 
 /// The elements of a page that show a motion: the last in its `main`, and those after it.
@@ -21,21 +19,16 @@ const QUANTUM_OF_TIME: f64 = 1e-7;
 /// The content of a page about a run.
 #[derive(Serialize)]
 pub struct ShownScene {
-    /// Title of the ground motion.
     pub title: String,
-    /// The structure as it is drawn.
     pub parameters: Sizes,
     /// Start of the run, s.
     pub start: f64,
-    /// How the run ended.
     pub ending: Ending,
     /// Since when it falls, s: the peaks are those before.
     pub fall: Option<f64>,
     /// Part of its peak by which a column may leave the motion.
     pub part: f64,
-    /// Time of each point.
     pub time: Quanta,
-    /// What is shown, in its order.
     pub quantities: Vec<ShownQuantity>,
     /// By name; of a restrained structure also the forces of the tendon and of the dissipators.
     pub columns: Vec<(String, Quanta)>,
@@ -53,7 +46,6 @@ pub struct ShownScene {
 /// units; units of the axis of its history, their sizes, and from and below which largest magnitude it has them; the quantity of which it is a
 /// multiple in every motion, and the factor.
 #[derive(Serialize)]
-#[allow(missing_docs)]
 pub struct ShownQuantity {
     pub name: &'static str,
     #[serde(flatten)]
@@ -69,7 +61,6 @@ pub type DrawnPeak = (String, f64, f64);
 
 /// A structure as it is drawn, in SI units.
 #[derive(Serialize)]
-#[allow(missing_docs)] // the paper's letters
 pub struct Sizes {
     /// Mass above the base.
     pub m: f64,
@@ -103,7 +94,6 @@ impl Quanta {
         Quanta { quantum, values: differences.collect() }
     }
 
-    /// Of the `values` of the points.
     pub fn new(values: &[f64]) -> Quanta {
         let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         Quanta::of(values, if most > 0.0 { QUANTUM * most } else { 1.0 })
@@ -121,17 +111,14 @@ pub fn quanta(duration: f64) -> i64 {
 }
 
 impl ShownScene {
-    /// The number of its values.
     pub fn values(&self) -> usize {
         self.time.values.len() * (1 + self.columns.len())
     }
 
-    /// As the script reads it.
     pub fn json(&self) -> String {
         serde_json::to_string(self).expect("its names are text")
     }
 
-    /// The page that shows it.
     pub fn page(&self) -> String {
         // in JSON a < stands within strings alone; escaped it cannot end the element that holds the data
         let data = self.json().replace('<', "\\u003c");

@@ -1,5 +1,4 @@
 //! The model in a browser: the functions that the page calls. Each takes the scene as JSON of its fields and answers in JSON.
-#![allow(non_snake_case)] // H, B: the paper's own letters
 
 mod map;
 mod scene;
@@ -75,7 +74,6 @@ pub struct Explorer {
 
 #[wasm_bindgen]
 impl Explorer {
-    /// An explorer without files.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Explorer {
         Explorer::default()

@@ -165,7 +165,6 @@ impl Fields {
         T::deserialize(StrDeserializer::<Error>::new(self.text(name).unwrap_or(default))).map_err(says)
     }
 
-    /// Whether the structure has storeys.
     pub fn is_frame(&self) -> bool {
         self.text("storeys").is_some()
     }
@@ -271,7 +270,6 @@ impl Fields {
         Ok(Pulse { cycles: self.given("cycles").unwrap_or(Ok(pulse.cycles))?, phase: self.number("phase")?, ..pulse })
     }
 
-    /// The options with which the file is read.
     pub fn reading(&self) -> Result<Reading, String> {
         let dt = self.given("dt").transpose()?;
         let unit = self.text("unit").map(|_| self.named("unit", "")).transpose()?;

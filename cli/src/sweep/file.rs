@@ -20,7 +20,6 @@ use std::collections::BTreeMap;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::slice::from_ref;
 
-/// Records on structures.
 pub struct RecordSweep {
     pub plan: Plan,
     /// Limits to count beside overturning.
@@ -34,7 +33,6 @@ pub struct RecordSweep {
 pub type MapSweep = (Vec<(String, Map)>, u32);
 
 pub enum SweepContent {
-    /// Records on structures.
     Records(Box<RecordSweep>),
     Pulses(MapSweep),
     /// A value of a number that is sought, and a line for each record.

@@ -30,7 +30,6 @@ const LARGEST_DOT: f64 = 5.0;
 const COLORS: [RGBColor; 7] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::PURPLE, colour::ORANGE, colour::SKY, colour::INK];
 
-/// Draws `populations`, their intensities in `measure`.
 pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMeasure) -> anyhow::Result<()> {
     let all = || populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
     let legend = 2.0 * LEGEND_MARGIN + LEGEND_LINE * (all().count() + 3) as f64;

@@ -8,7 +8,6 @@ use FlexibleRocking::resources::Contents;
 const TEMPLATE: &str = include_str!("../resources/index.html");
 const ICON: &str = include_str!("../resources/model.svg");
 
-/// The page of the FMU `name` with these `contents` and `libraries`.
 pub fn documentation(version: Version, name: &str, contents: &Contents, libraries: &[&Library]) -> String {
     let of = &contents.structure;
     let structure = match of.one() {
@@ -40,7 +39,6 @@ pub fn documentation(version: Version, name: &str, contents: &Contents, librarie
     fillings.iter().fold(TEMPLATE.to_owned(), |page, (place, text)| page.replace(place, text))
 }
 
-/// `text` as HTML shows it.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;")
 }

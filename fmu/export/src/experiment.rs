@@ -27,12 +27,8 @@ pub fn default_experiment(structure: &Structure, ground: Option<&GroundRecord>) 
         }
         None => (10.0 / p_l, at_most(TAU / structure.vibration().rocking[0] / 20.0)),
     };
-    DefaultExperiment {
-        start_time: 0.0,
-        stop_time: rounded((duration / step_size).ceil() * step_size),
-        tolerance: DEFAULT_TOLERANCE,
-        step_size: rounded(step_size),
-    }
+    let (stop_time, step_size) = (rounded((duration / step_size).ceil() * step_size), rounded(step_size));
+    DefaultExperiment { start_time: 0.0, stop_time, tolerance: DEFAULT_TOLERANCE, step_size }
 }
 
 /// `seconds` without the noise of differences of decimal fractions.

@@ -1,5 +1,4 @@
 //! Makes the FMU: an archive of the shared libraries with all that describes them.
-#![allow(non_snake_case)] // the shared library's name
 
 mod documentation;
 mod experiment;
@@ -29,7 +28,6 @@ const ICON: &[u8] = include_bytes!("../resources/model.png");
 pub struct ModelName(String);
 
 impl ModelName {
-    /// The name as text.
     pub fn as_str(&self) -> &str {
         &self.0
     }
@@ -61,41 +59,31 @@ pub fn check_target(target: &Path) -> Result<(), ExportError> {
     if is_fmu { Ok(()) } else { Err(ExportError::Suffix(target.into())) }
 }
 
-/// Why an FMU could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// A name that hosts and file systems do not take.
     #[error("the name {0:?} must consist of the letters a to z and A to Z, digits and _, and not begin with a digit")]
     Name(String),
-    /// A file that hosts do not open.
     #[error("{} does not end in .fmu, as hosts require: add .fmu", .0.display())]
     Suffix(PathBuf),
-    /// Two libraries for one platform.
     #[error("two shared libraries are for {}: leave one out", .0.tuple())]
     SamePlatform(Platform),
     /// A structure of many masses without modes.
     #[error("the FMU moves modes: {0}; for a rigid structure set detail = rigid")]
     Structure(#[from] ContentsError),
-    /// The vertical component does not belong to the record.
     #[error(transparent)]
     NoPair(#[from] SamplesError),
-    /// A file that is no record.
     #[error(transparent)]
     NoRecord(#[from] RecordError),
-    /// A file whose name is not text.
     #[error("the record {path} needs a name in UTF-8", path = .0.display())]
     RecordName(PathBuf),
-    /// A record with the name of another or of the contents.
     #[error(
         "the archive would have two files called {0}: rename the record; capitals and small letters are the same here"
     )]
     SameName(String),
-    /// The archive cannot be made.
     #[error("the archive: {0}")]
     Archive(#[from] zip::result::ZipError),
 }
 
-/// The path of a file, and its content.
 pub type RecordFile = (PathBuf, Vec<u8>);
 
 /// The FMU of `contents`, yet without records, under `name` for hosts of `version`: its contents, and the bytes of the archive.

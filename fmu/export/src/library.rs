@@ -17,20 +17,15 @@ const MOST: u64 = if cfg!(test) { 1 << 12 } else { 1 << 28 };
 /// A platform for which an archive can have a shared library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Platform {
-    /// Linux on x86-64.
     Linux64,
-    /// Linux on 64-bit ARM.
     LinuxArm64,
-    /// Windows on x86-64.
     Windows64,
     /// macOS on x86-64, or on both in one file.
     Darwin64,
-    /// macOS on 64-bit ARM.
     DarwinArm64,
 }
 
 impl Platform {
-    /// All of them.
     pub const ALL: [Platform; 5] =
         [Platform::Linux64, Platform::LinuxArm64, Platform::Windows64, Platform::Darwin64, Platform::DarwinArm64];
 
@@ -61,12 +56,10 @@ impl Platform {
         self.names()[1]
     }
 
-    /// The file that cargo builds for it.
     pub fn file(self) -> &'static str {
         self.names()[2]
     }
 
-    /// The path of the library in an archive of the model `name`.
     pub(crate) fn path(self, version: Version, name: &str) -> String {
         let (_, extension) = self.file().rsplit_once('.').expect("they have one");
         format!("binaries/{}/{name}.{extension}", self.folder(version))
@@ -94,27 +87,21 @@ impl Platform {
     }
 }
 
-/// A shared library of this build.
 #[derive(Debug)]
 pub struct Library {
-    /// The platform of the library.
     pub platform: Platform,
     pub(crate) content: Vec<u8>,
 }
 
-/// Why a shared library cannot be had.
 #[derive(Debug, thiserror::Error)]
 pub enum LibraryError {
-    /// No such file, or one that cannot be read.
     #[error("cannot read the shared library {path}: {1}", path = .0.display())]
     Unreadable(PathBuf, io::Error),
-    /// An archive that cannot be read.
     #[error("cannot read the libraries in {path}: {1}", path = .0.display())]
     Archive(PathBuf, ZipError),
     /// An archive without a library where an FMU has it, and a file that it holds instead.
     #[error("{path} has no shared library in a folder such as binaries/x86_64-linux; it holds {1}: give an FMU as this build exported it", path = .0.display())]
     NoneInside(PathBuf, String),
-    /// Something else, or for another platform.
     #[error("{} is neither an FMU nor a shared library for one of {}", .0.display(), Platform::ALL.map(Platform::tuple).join(", "))]
     NoLibrary(PathBuf),
     /// A library from other sources than this exporter, so that its variables may be others.

@@ -7,13 +7,11 @@ use FlexibleRocking::variables::VariableTable;
 use fmi_unit::Variable;
 use model_description::{DefaultExperiment, ModelDescription};
 
-/// The model in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks on its foundation under earthquake ground motion";
 
 /// The content of the log category of events, in one line.
 pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happen";
 
-/// The text of the description of the FMU `name` with these `contents`.
 pub fn xml(version: Version, name: &str, contents: &Contents, default_experiment: DefaultExperiment) -> String {
     let (structure, VariableTable { variables, sources }) = (&contents.structure, VariableTable::new(contents));
     let described = |(variable, source): (&Variable, &Source)| Variable {

@@ -388,7 +388,6 @@ pub(crate) fn check_count(name: &'static str, given: size_t, needed: size_t) -> 
     if given == needed { Ok(()) } else { Err(Failure::WrongCount { name, given, needed }) }
 }
 
-/// The value at `pointer`.
 pub(crate) unsafe fn read<T: Copy>(name: &'static str, pointer: *const T) -> Result<T, Failure> {
     check_pointer(name, pointer)?;
     Ok(unsafe { *pointer })
@@ -402,7 +401,6 @@ pub(crate) fn truth(name: &str, value: c_int, accepted: &'static str) -> Result<
     }
 }
 
-/// Writes `value` to `pointer`.
 pub(crate) unsafe fn write<T>(name: &'static str, pointer: *mut T, value: T) -> Result<(), Failure> {
     check_pointer(name, pointer)?;
     unsafe { pointer.write(value) };
@@ -414,7 +412,6 @@ pub(crate) fn check_pointer<T>(name: &'static str, pointer: *const T) -> Result<
     if pointer.is_null() || !pointer.is_aligned() { Err(Failure::BadPointer(name)) } else { Ok(()) }
 }
 
-/// The text at `pointer`.
 pub(crate) unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Result<&'a str, Failure> {
     check_pointer(name, pointer)?;
     let length = unsafe { libc::strnlen(pointer, MAX_TEXT + 1) };
@@ -512,7 +509,6 @@ macro_rules! functions {
             #[doc = ""]
             $(#[$doc])*
             #[inline]
-            #[allow(clippy::too_many_arguments)] // the standard's
             pub unsafe fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
                 unsafe {
                     $crate::c_abi::functions!(

@@ -5,7 +5,7 @@
 //! it: state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back
 //! gives the inputs at the end of every step before it is computed, and they are straight lines over the step; else
 //! they are held. After the step is computed it can read all variables.
-#![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
+#![allow(unsafe_code, clippy::missing_safety_doc, clippy::too_many_arguments)] // as in `c_abi`; the standard's arguments
 
 mod stages;
 
@@ -216,7 +216,6 @@ with_lists! {
     { GetVersion() -> *const c_char { c"3.0".as_ptr() } }
 
     {
-        #[allow(clippy::too_many_arguments)] // the standard's
         InstantiateCoSimulation(
         instanceName: *const c_char, instantiationToken: *const c_char, resourcePath: *const c_char, _visible: u8,
         loggingOn: u8, eventModeUsed: u8, earlyReturnAllowed: u8, requiredIntermediateVariables: *const c_uint,
@@ -270,7 +269,6 @@ with_lists! {
     [
         /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
         /// this function the host is called back, and may call the instance.
-        #[allow(clippy::too_many_arguments)] // the standard's
         DoStep(
         c: *mut c_void, currentCommunicationPoint: f64, communicationStepSize: f64,
         _noSetFMUStatePriorToCurrentPoint: u8, eventHandlingNeeded: *mut u8, terminateSimulation: *mut u8,

@@ -28,7 +28,6 @@ pub struct Instance {
     variables: Arc<[Variable]>,
     /// The value reference that the host has for the variable at position 0.
     first: u32,
-    /// Whether each variable is a real number.
     are_real: Vec<bool>,
     /// The range of each real input; no number is in that of other variables.
     ranges: Vec<(f64, f64)>,
@@ -116,7 +115,6 @@ impl Instance {
         }
     }
 
-    /// The variable at the position `reference`.
     #[inline]
     fn find(&self, reference: u32) -> Result<&Variable, Failure> {
         find(&self.variables, reference, self.first)
@@ -127,7 +125,6 @@ impl Instance {
         self.variables.iter().filter(|variable| is_one(&variable.role)).count()
     }
 
-    /// Sets tolerance and times.
     pub(crate) fn set_up(&mut self, experiment: Experiment) -> Result<(), Failure> {
         let Experiment { tolerance, start_time, stop_time } = experiment;
         let refuse = |name, value, limit: &str| Err(Failure::Experiment { name, value, limit: limit.to_owned() });
@@ -169,7 +166,6 @@ impl Instance {
         self.enter(Stage::EventMode)
     }
 
-    /// Ends the simulation.
     pub(crate) fn terminate(&mut self) -> Result<(), Failure> {
         let is_outside = self.stage == Stage::ContinuousTimeMode && !self.handling.has_begun;
         if is_outside && self.model.time()? > self.experiment.start_time {
@@ -218,7 +214,6 @@ impl Instance {
         Ok(())
     }
 
-    /// The FMU state `handle` as bytes.
     pub(crate) fn serialize_fmu_state(&self, handle: usize) -> Result<Vec<u8>, Failure> {
         Ok(self.snapshots.find(handle)?.serialize(&self.model.build()))
     }
@@ -240,7 +235,6 @@ impl Instance {
 
 /// How values are read and set: all of a call, or none if one is refused.
 impl Instance {
-    /// Reads real numbers.
     #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32]) -> Result<&[f64], Failure> {
         let is_real = |reference: &u32| self.are_real.get(*reference as usize) == Some(&true);
@@ -281,7 +275,6 @@ impl Instance {
         self.get_others(of, of_type, |value| if let Value::Integer(number) = value { number } else { 0 })
     }
 
-    /// Reads Booleans.
     pub(crate) fn get_booleans(&mut self, of: &[u32]) -> Result<Vec<bool>, Failure> {
         self.get_others(of, |data_type| *data_type == DataType::Boolean, |value| value == Value::Boolean(true))
     }
@@ -397,7 +390,6 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets numbers of enumerations.
     pub(crate) fn set_integer<T: Copy + Into<i64>>(&mut self, references: &[u32], values: &[T]) -> Result<(), Failure> {
         self.set_others(references, values, |variable, value| {
             let DataType::Enumeration(enumeration) = variable.data_type else { return Err(refused(variable)) };
@@ -425,7 +417,6 @@ impl Instance {
         })
     }
 
-    /// Sets texts.
     pub(crate) fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<(), Failure> {
         self.set_others(references, values, |variable, value| {
             let is_one = variable.data_type == DataType::String;
@@ -544,10 +535,11 @@ impl Instance {
             self.stage = Stage::StepComplete;
         }
         let time = self.check_step(point, step)?;
-        let stops_at_events = self.interface.stepping().hands_over();
+        let Stepping { event_mode, early_return } = self.interface.stepping();
         let (start, duration) =
             if is_rounding(point, time, step) { (point, step) } else { (time, point + step - time) };
-        let step = StepRequest { start, duration, stops_at_events };
+        // an event that a step ends at is handed over: the host must be able to do both
+        let step = StepRequest { start, duration, stops_at_events: event_mode && early_return };
         let progress = self.model.advance(step, &self.logger);
         let progress = self.stop_if_stuck(progress)?;
         if progress == StepEnd::Ended {
@@ -609,7 +601,6 @@ fn is_same_time(a: f64, b: f64, step: f64) -> bool {
 
 /// The service of an instance to a host that integrates.
 impl Instance {
-    /// Goes to the host's `time` (s).
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Failure> {
         if !(time.is_finite() && (time - self.experiment.start_time).is_finite()) {
             return Err(Failure::BadTime(time));
@@ -621,7 +612,6 @@ impl Instance {
         if self.handling.trials >= MANY_TRIALS { self.warn_of_events(TRIALS) } else { Ok(()) }
     }
 
-    /// Goes to the host's states.
     pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Failure> {
         let mut named = state_references(&self.variables).zip(states);
         if let Some((reference, &value)) = named.find(|(_, value)| !value.is_finite()) {

@@ -22,13 +22,6 @@ pub struct Stepping {
     pub early_return: bool,
 }
 
-impl Stepping {
-    /// Whether a step ends at an event, which is handed over: the host must be able to do both.
-    pub fn hands_over(self) -> bool {
-        self.event_mode && self.early_return
-    }
-}
-
 impl Interface {
     /// The stage in which a simulation starts.
     pub const fn first_stage(self) -> Stage {

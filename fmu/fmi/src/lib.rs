@@ -20,7 +20,7 @@
 //! | [`variables`] | the table of variables, and what depends on what |
 //! | [`interface`], [`logger`], [`state_machine`], [`uri`] | who integrates; messages to the host; stages, and tables of them; paths |
 #![cfg_attr(target_family = "wasm", allow(dead_code))] // in a browser no host calls C functions
-#![allow(non_snake_case)] // the standard's names of arguments
+#![warn(missing_docs)]
 
 #[cfg(not(target_family = "wasm"))]
 pub mod c_abi;

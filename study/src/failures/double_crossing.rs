@@ -15,12 +15,8 @@ pub fn show() -> Result<Exhibit> {
     let scene = at_rest(Parameters::MCMANUS, START, 1.5 * LOOK);
     let right = exact(&scene, Detail::Nonlinear, every(CLOSE))?;
     let first = right.transitions.first().context("the exact response has transitions")?.time;
-    let equations = PhaseEquations {
-        structure: &scene.structure,
-        phase: Phase::Rocking(Side::Right),
-        a_g: Ramp::default(),
-        evaluations: &Cell::new(0),
-    };
+    let (structure, phase, evaluations) = (&scene.structure, Phase::Rocking(Side::Right), &Cell::new(0));
+    let equations = PhaseEquations { structure, phase, a_g: Ramp::default(), evaluations };
     let path = every(CLOSE).take(75).scan(MovingPoint::start(&START), |point, t| {
         *point = FixedStep::RungeKutta4.step(&equations, t - CLOSE, point, CLOSE);
         Some((t, point.position[1]))

@@ -6,7 +6,6 @@ use plotters::prelude::*;
 use rocking_sweep::map::{Axis, Fate, GridPlace, Map, MapPoint, PARTS, nearest};
 use std::{collections::HashMap, ops::Range};
 
-/// A map, and what is known of it.
 pub struct PulseSpectrum {
     pub name: String,
     pub map: Map,
@@ -28,7 +27,6 @@ const LONGEST_NAME: usize = 50;
 /// whole, and nothing shines through between cells.
 const OVERLAP: f64 = 1.0;
 
-/// A colour, and what it stands for.
 type Swatch = (RGBColor, &'static str);
 
 const CLASSES: [Swatch; 10] = [
@@ -53,7 +51,6 @@ const CONDITIONS: [Swatch; 6] = [
     (colour::INK, "1e-12 changes the class"),
 ];
 
-/// Meaning of the colours of a picture.
 #[derive(Clone, Copy)]
 struct Key {
     /// The number of a point's swatch.

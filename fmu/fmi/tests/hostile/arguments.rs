@@ -46,7 +46,6 @@ pub(crate) use calls;
 /// Log categories, the first two of which exist.
 pub const CATEGORIES: [&CStr; 4] = [c"logEvents", c"logStatusError", c"nonsense", c"\xff%n"];
 
-/// Which variables a call is meant for.
 type Meant = fn(&Variable) -> bool;
 
 /// Any variable, none of them more often than others.
@@ -61,7 +60,6 @@ pub const OUTPUT: Meant = |variable| variable.causality == Causality::Output && 
 pub const INPUT: Meant = |variable| variable.causality == Causality::Input;
 const STATE: Meant = |variable| variable.role == Role::State;
 
-/// The arguments of one call.
 #[derive(Default)]
 pub struct CallData {
     pub references: Vec<c_uint>,
@@ -143,12 +141,10 @@ impl Sequence<'_> {
         self.finite(n)
     }
 
-    /// Room for a derivative of each unknown.
     pub fn derivatives(&mut self) -> *mut f64 {
         self.finite(self.drawn.unknowns)
     }
 
-    /// Room for a value of each variable.
     pub fn values<T>(&mut self) -> *mut T {
         self.room(self.drawn.references.len())
     }
@@ -227,7 +223,6 @@ impl Sequence<'_> {
         if is_continuous && self.one_in(4) { self.references(STATE) } else { self.references(INPUT) }
     }
 
-    /// Values for them.
     pub fn reals_to_set(&mut self) -> *const f64 {
         let mut values = std::mem::take(&mut self.drawn.reals);
         for at in values.len()..self.drawn.references.len() + 1 {

@@ -49,7 +49,6 @@ const LEADING_ON: &str = "SetupExperiment EnterInitializationMode ExitInitializa
                           SetTime SetContinuousStates CompletedIntegratorStep SetFMUstate SetFMUState \
                           DeSerializeFMUstate DeserializeFMUState";
 
-/// An instance.
 pub type C = *mut c_void;
 
 /// The model that is called.
@@ -104,10 +103,8 @@ impl Target {
     }
 }
 
-/// A call of an instance with arguments that are drawn for it.
 type Call = fn(C, &mut Sequence) -> c_int;
 
-/// A version of the standard.
 struct TestedVersion {
     /// The start of the functions' names in C.
     name: &'static str,
@@ -261,7 +258,6 @@ impl CallTally {
     }
 }
 
-/// The log of an instance.
 #[derive(Default)]
 struct HostLog {
     messages: RefCell<Vec<(c_int, String)>>,
@@ -304,7 +300,6 @@ struct Sequence<'a> {
     /// The new instance as bytes, and the instance before the next call.
     new: Vec<u8>,
     before: Option<Snapshot>,
-    /// Serialized states.
     bytes: Vec<Vec<u8>>,
     drawn: CallData,
 }
