@@ -37,6 +37,7 @@ use crate::mechanics::lateral::{Coordinates, Duals, Lateral};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraints, levers, restraints};
+use crate::mechanics::state::Properties;
 use crate::numbers::dual::Dual;
 use crate::series::first_crossing::Crossing;
 use crate::structure::mode::Modes;
@@ -394,12 +395,12 @@ impl<Q: Coordinates> Engine<Q> {
 
     /// Whether the structure has the phase of this `motion`, which may come from bytes.
     pub fn admits(&self, motion: &Motion<Q>) -> bool {
-        let ground = Q::foundation(self.structure());
+        let (ground, Properties { is_over, is_down, .. }) =
+            (Q::foundation(self.structure()), motion.phase.properties());
         match motion.phase {
             Phase::OnGround(of) => ground.is_some_and(|ground| ground.admits(of)),
-            Phase::Rocking(_) => ground.is_none() && self.settings.detail.has_uplift(),
-            Phase::FullContact => ground.is_none(),
-            Phase::Overturned(_) => true,
+            _ if is_over => true,
+            _ => ground.is_none() && (is_down || self.settings.detail.has_uplift()),
         }
     }
 
@@ -724,7 +725,7 @@ impl<Q: Coordinates, E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool> Loop<'_, Q
             let mut step =
                 Step { level, side, contact, start: &begin, arc: self.arc, reach: self.arc.reach, is_cut: false };
             let closed = first(watched, &mut step);
-            let (reach, (moved, settled)) = (step.reach, watched.moved(level.subject(), &step));
+            let (reach, (moved, settled)) = (step.reach, watched.moved(&step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
             let has_stalled = || closed.is_none() && duration <= STALLED / level.structure().vibration().rocking[1];

@@ -138,7 +138,7 @@ impl<Rocking: ElasticRocking + Clone + Send + 'static> Level for Elastic<Rocking
                 full_contact::leap(contact, start, hold, |_| 1.0)
             }
             Phase::Rocking(side) => self.rocking.leap(side, start),
-            Phase::Overturned(_) | Phase::OnGround(_) => None,
+            _ => None,
         }
     }
 

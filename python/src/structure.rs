@@ -16,7 +16,7 @@ use rocking::structure::derived::{Derived, OF_MODE};
 use rocking::structure::description::Description;
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::PRESETS;
-use rocking::{OneMass, Side, State};
+use rocking::{OneMass, Phase, State};
 use rocking_report::structure_file::{self, OF_MANY, of_table};
 use rocking_report::{describe, input};
 use rocking_sweep::plan::Population;
@@ -325,9 +325,9 @@ impl PyStructure {
                 let accelerations = ModalAccelerations::of(&structure, side, &state, a_g).map_err(refused)?;
                 PyResult::Ok([of.q_r, of.q_u, accelerations.a_r, accelerations.a_u])
             };
-            let split = match phase?.extract()? {
-                "rocking left" => split(Side::Left)?,
-                "rocking right" => split(Side::Right)?,
+            let name: String = phase?.extract()?;
+            let split = match Phase::SHOWN.into_iter().find(|of| of.name() == name) {
+                Some(Phase::Rocking(side)) => split(side)?,
                 _ => [f64::NAN; 4],
             };
             modes.iter_mut().zip(split).for_each(|(column, number)| column.push(number));

@@ -263,11 +263,15 @@ impl<Q: Coordinates> Guard<Q> for Tied {
     }
 }
 
-/// The dissipators at the reach of a step, and what friction has taken there.
-pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
+/// The dissipators at the reach of a step, and what friction has taken there, if the step changes them.
+pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Option<Dissipators> {
     let &Step { level, contact, start, arc, reach, .. } = step;
+    let base = level.structure().base();
+    if !base.is_restrained() && contact.yields == 0 && contact.friction.sign() == 0.0 {
+        return None;
+    }
     let (ground, mut moved) = (level.structure().ground(), *start.dissipators);
-    let (base, end) = (level.structure().base(), || Q::evaluate(arc.used(&arc.u), reach));
+    let end = || Q::evaluate(arc.used(&arc.u), reach);
     if base.is_restrained() {
         let rises = Rises::new(level, arc);
         let of = |j: usize| evaluate(&rises.above(0.0, places(base)[j], 0.0).0[..=arc.order], reach) - ground.y_s;
@@ -281,7 +285,7 @@ pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Dissipators {
         moved.slip += side.sign() * (end().of(place) - arc.u[0].of(place));
         moved.friction += side.sign() * mu_c * rubbed;
     }
-    moved
+    Some(moved)
 }
 
 /// Adds what points that yield have taken over a step, at the end of which they have `settled` by so much.

@@ -21,7 +21,7 @@ use crate::numbers::Real;
 use crate::series::extremes::off_chord;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{evaluate, sum_of_magnitudes};
-use crate::{Phase, PressedPoints, Side, Structure};
+use crate::{Phase, Side, Structure};
 use std::f64::consts::FRAC_PI_2;
 
 /// A phase as the loop knows it.
@@ -32,7 +32,7 @@ pub(crate) struct Rules<Q: Coordinates = f64> {
     pub stays: Option<fn(&Step<Q>) -> bool>,
     pub guards: &'static [&'static dyn Guard<Q>],
     /// The dissipators at the reach of a step, if a step moves them.
-    pub moved: Option<fn(&Step<Q>) -> Dissipators>,
+    pub moved: Option<fn(&Step<Q>) -> Option<Dissipators>>,
 }
 
 impl<Q: Coordinates> Rules<Q> {
@@ -66,12 +66,9 @@ impl<Q: Coordinates> Rules<Q> {
 
     /// At the reach of `step`, the dissipators if it moves them, and how far points have settled for good if one yields.
     #[inline]
-    pub(crate) fn moved(&self, subject: &LevelSubject<Q>, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
-        let is_restrained = subject.is_tied && subject.structure.base().is_restrained();
-        let PressedPoints { yields, friction, .. } = step.contact;
-        let moves = is_restrained || yields != 0 || friction.sign() != 0.0;
-        let mut moved = self.moved.filter(|_| moves).map(|moved| moved(step));
-        let settled = (yields != 0).then(|| contacts::settled(step));
+    pub(crate) fn moved(&self, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
+        let mut moved = self.moved.and_then(|moved| moved(step));
+        let settled = (step.contact.yields != 0).then(|| contacts::settled(step));
         settled.iter().for_each(|settled| moved.iter_mut().for_each(|of| contacts::settle(step, settled, of)));
         (moved, settled)
     }

@@ -102,12 +102,14 @@ fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
     moving(base, side).map(of).fold(1.0, f64::min)
 }
 
-/// The dissipators at the reach of a step.
-pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Dissipators {
+/// The dissipators at the reach of a step, if there are any or a tendon.
+pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Option<Dissipators> {
     let (base, angles) = (level.structure().base(), level.subject().detail.angles());
     let chord = || angles.chord(evaluate(arc.used(&arc.theta), reach), 0.0).length;
     let power = |(c, rate): (f64, Terms)| c * (product_integral(rate.used(), rate.used(), reach) * arc.span);
-    start.dissipators.stepped(base, |j| levers(base, side)[j] * chord(), dampers(base, angles, arc).map(power))
+    let stepped =
+        || start.dissipators.stepped(base, |j| levers(base, side)[j] * chord(), dampers(base, angles, arc).map(power));
+    base.is_restrained().then(stepped)
 }
 
 /// ∫ (Σ a_k σᵏ) (Σ b_k σᵏ) dσ from 0 to `reach`.
