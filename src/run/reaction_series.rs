@@ -30,9 +30,9 @@ pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms>
     if let Some(drive) = expansion.drive() {
         push = push - drive * base.m_t;
     }
-    let Turn { sin, cos, .. } = over.turn;
-    let [right, up] = [along * cos + across * sin, across * cos - along * sin].map(|momentum| momentum.slope(arc.span));
-    let [R_h, R_v] = [push - right, weight * base.m_t + up];
+    let Turn { sin, cos, .. } = &over.turn;
+    let R_h = push - (along * *cos + across * *sin).slope(arc.span);
+    let R_v = weight * base.m_t + (across * *cos - along * *sin).slope(arc.span);
     let R_m = match phase.properties().is_down {
         true => ramp(&|load| structure.pushes(load)[1]) - gauges.M_t.at(&over) + weight * offset,
         false => Terms::constant(0.0),
