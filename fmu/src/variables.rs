@@ -167,16 +167,15 @@ fn forces() -> [VariableRow; 9] {
     let impulse = |name, unit, description, of| {
         (Variable::of_type(number(unit), Causality::Output, name, description), Source::Impulse(of))
     };
-    let tie = |name, description, of, from| force([name, "N", description], Source::Restraint(of), from);
-    const OF_DISSIPATOR: &[&str] = &["theta", "theta_dot", "B", "xi_d", "c_d", "k_d", "F_y"];
-    let first = "force of the dissipators at +xi_d, viscous plus elastoplastic; tension is positive";
+    let tie =
+        |of: Output, value| force([of.symbol(), of.unit(), of.text()], Source::Restraint(value), of.follows_from());
     [
         reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
         reaction("R_v", "N", "vertical force on the ground, positive downwards", |r| r.R_v),
         reaction("R_m", "N.m", "moment on the ground about the middle of the base, signed like theta", |r| r.R_m),
-        tie("P_t", "force of the tendon", |r| r.P_t, &["theta", "B", "P_0", "k_t"]),
-        tie("F_d1", first, |r| r.F_d1, OF_DISSIPATOR),
-        tie("F_d2", "force of the dissipators at -xi_d; see F_d1", |r| r.F_d2, OF_DISSIPATOR),
+        tie(Output::P_t, |r| r.P_t),
+        tie(Output::F_d1, |r| r.F_d1),
+        tie(Output::F_d2, |r| r.F_d2),
         impulse("I_h", "N.s", "horizontal impulse of the impacts on the ground so far", |i| i.I_h),
         impulse("I_v", "N.s", "vertical impulse of the impacts on the ground so far, downwards", |i| i.I_v),
         impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, signed like theta", |i| i.I_m),

@@ -143,6 +143,9 @@ pub const ACCELERATION: &[&str] = &{
 /// The variables of an FMU that forces of contact points follow from.
 pub const CONTACT: &[&str] = &["y", "y_dot", "theta", "theta_dot", "s", "f_v"];
 
+/// The variables of an FMU that forces of dissipators follow from.
+const DISSIPATORS: &[&str] = &["theta", "theta_dot", "B", "xi_d", "c_d", "k_d", "F_y"];
+
 use Place::{Feet, Floors, Histories, Numbers, OneMass, Page, PageOnGround, Scene, Storeys};
 
 outputs! {
@@ -197,9 +200,10 @@ outputs! {
         Edge [] Component, &[];
     edge(i: usize) ["N/m"] "mean pressure over the outer sixth of the base at edge #" "left (0) or right (1)",
         Edge [] Component, &[];
-    P_t ["N"] "force of the tendon", Tie [] Component, &[];
-    F_d1 ["N"] "force of the dissipators at +xi_d" "which a sample has", Tie [] None, &[];
-    F_d2 ["N"] "force of the dissipators at -xi_d" "which a sample has", Tie [] None, &[];
+    P_t ["N"] "force of the tendon", Tie [] Component, &["theta", "B", "P_0", "k_t"];
+    F_d1 ["N"] "force of the dissipators at +xi_d, viscous plus elastoplastic; tension is positive" "which a sample has",
+        Tie [] None, DISSIPATORS;
+    F_d2 ["N"] "force of the dissipators at -xi_d; see F_d1" "which a sample has", Tie [] None, DISSIPATORS;
 }
 
 use Output::{
@@ -211,12 +215,13 @@ use Output::{u, u_dot, v_t, x_dot, y};
 
 /// The outputs of one mass, each at its place among the columns (0) or peaks (1).
 const fn of_one<const N: usize>(which: usize) -> [Output; N] {
-    let (mut all, mut i) = ([theta; N], 0);
+    let (mut all, mut is_taken, mut i) = ([theta; N], [false; N], 0);
     while i < EACH.len() {
         let &OutputRow { of_one: places, search, .. } = EACH[i].row();
         if which < places.len() {
             assert!((places.len() == 1) == matches!(search, Search::None), "one mass has the peaks of many masses");
-            all[places[which]] = EACH[i];
+            assert!(!is_taken[places[which]], "two outputs of one mass have the same place");
+            (all[places[which]], is_taken[places[which]]) = (EACH[i], true);
         }
         i += 1;
     }
@@ -364,6 +369,11 @@ impl Output {
     /// The unit.
     pub const fn unit(self) -> &'static str {
         self.row().unit
+    }
+
+    /// The description, in which `#` stands for the number of a floor.
+    pub const fn text(self) -> &'static str {
+        self.row().description
     }
 
     /// The description of an output of `structure`.

@@ -13,25 +13,56 @@ pub struct Residual {
     pub unit: &'static str,
     pub description: &'static str,
     is_of: fn(&Foundation) -> bool,
+    value: Value,
 }
 
-const fn residual([name, unit, description]: [&'static str; 3], is_of: fn(&Foundation) -> bool) -> Residual {
-    Residual { name, unit, description, is_of }
+/// How a number follows from the end of a run.
+#[derive(Debug)]
+enum Value {
+    /// An output that adds up.
+    Output(Output),
+    /// x, m.
+    Way,
+    /// Of y (m) and sin θ at rest on the settled ground.
+    AtRest(fn(&Foundation, [f64; 2]) -> f64),
 }
 
 const SLIDES: fn(&Foundation) -> bool = |of| of.mu_c.is_some();
 const YIELDS: fn(&Foundation) -> bool = |of| of.yields;
 
+const fn residual(
+    [name, unit, description]: [&'static str; 3],
+    is_of: fn(&Foundation) -> bool,
+    value: Value,
+) -> Residual {
+    Residual { name, unit, description, is_of, value }
+}
+
+const fn of_output(of: Output, is_of: fn(&Foundation) -> bool) -> Residual {
+    residual([of.symbol(), of.unit(), of.text()], is_of, Value::Output(of))
+}
+
 /// The numbers, in the order in which they are shown.
 pub const RESIDUALS: [Residual; 8] = [
-    residual(["x_end", "m", "way of the base at the end"], SLIDES),
-    residual(["slip_path", "m", "sum of the slips"], SLIDES),
-    residual(["E_friction", "J", "energy that friction has taken"], SLIDES),
-    residual(["theta_res", "rad", "rotation at rest on the settled ground"], YIELDS),
-    residual(["settlement_res", "m", "settlement at rest of the lower outer point"], YIELDS),
-    residual(["tilt", "rad", "rotation of the settled points"], YIELDS),
-    residual(["settled", "m", "mean settlement of the points for good"], YIELDS),
-    residual(["E_plastic", "J", "energy that settling for good has taken"], YIELDS),
+    residual(["x_end", "m", "way of the base at the end"], SLIDES, Value::Way),
+    of_output(Output::slip_path, SLIDES),
+    of_output(Output::E_friction, SLIDES),
+    residual(
+        ["theta_res", "rad", "rotation at rest on the settled ground"],
+        YIELDS,
+        Value::AtRest(|_, [_, sin]| libm::asin(sin)),
+    ),
+    residual(
+        ["settlement_res", "m", "settlement at rest of the lower outer point"],
+        YIELDS,
+        Value::AtRest(|ground, [y, sin]| {
+            let outer = [0, ground.points.len() - 1].map(|i| y - ground.points[i].xi * sin);
+            -outer[0].min(outer[1])
+        }),
+    ),
+    of_output(Output::tilt, YIELDS),
+    of_output(Output::settled, YIELDS),
+    of_output(Output::E_plastic, YIELDS),
 ];
 
 impl Residual {
@@ -45,23 +76,14 @@ impl Residual {
     /// is infinite.
     pub fn of<Q: Coordinates>(&self, structure: &Structure, motion: &Motion<Q>) -> f64 {
         let Some(ground) = Q::foundation(structure) else { return f64::NAN };
-        let added_up = |of: Output| of.added_up(structure, motion.kept()).unwrap_or(f64::NAN);
-        let rest = || {
-            let now = Some(libm::sin(motion.state.theta)).filter(|_| !motion.phase.properties().is_over);
-            now.and_then(|now| ground.at_rest(structure, now, &|i| motion.settled.as_ref()[i]))
-        };
-        match self.name {
-            "x_end" => motion.state.u.slide(ground).unwrap_or(f64::NAN),
-            "slip_path" => added_up(Output::slip_path),
-            "E_friction" => added_up(Output::E_friction),
-            "tilt" => added_up(Output::tilt),
-            "settled" => added_up(Output::settled),
-            "E_plastic" => added_up(Output::E_plastic),
-            "theta_res" => rest().map_or(f64::INFINITY, |[_, sin]| libm::asin(sin)),
-            _ => rest().map_or(f64::INFINITY, |[y, sin]| {
-                let outer = [0, ground.points.len() - 1].map(|i| y - ground.points[i].xi * sin);
-                -outer[0].min(outer[1])
-            }),
+        match self.value {
+            Value::Output(of) => of.added_up(structure, motion.kept()).unwrap_or(f64::NAN),
+            Value::Way => motion.state.u.slide(ground).unwrap_or(f64::NAN),
+            Value::AtRest(value) => {
+                let now = Some(libm::sin(motion.state.theta)).filter(|_| !motion.phase.properties().is_over);
+                let rest = now.and_then(|now| ground.at_rest(structure, now, &|i| motion.settled.as_ref()[i]));
+                rest.map_or(f64::INFINITY, |rest| value(ground, rest))
+            }
         }
     }
 }
