@@ -52,7 +52,7 @@ impl Detail {
         let one = *structure.of_mode()?;
         let is_tied = structure.base().is_restrained() || is_vertical;
         let subject = LevelSubject { structure, local_error, is_tied, detail: self, first: RefCell::default() };
-        let contact = ExactContact::new(Oscillator { omega: one.omega_fc, zeta: one.parameters().zeta_fc });
+        let contact = ExactContact::new(Oscillator::new(one.omega_fc, one.parameters().zeta_fc));
         Ok(match self {
             Detail::Auto | Detail::Nonlinear | Detail::FixedBase => {
                 let contact = (self != Detail::Nonlinear).then_some(contact);

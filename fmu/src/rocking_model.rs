@@ -199,12 +199,11 @@ impl<Q: Runs> Model for RockingModel<Q> {
             unreachable!("it is built")
         };
         let load = scene.load(setup, inputs.values::<Q>(scene.engine.structure()).into()).value;
-        let (mut outputs, mut shown, sources): (_, _, &[Source]) = (None, None, sources);
+        let (outputs, mut shown, sources): (_, _, &[Source]) = (scene.engine.outputs(load), None, sources);
         for (reference, value) in references.iter().zip(values) {
-            let source = &sources[*reference as usize];
-            *value = match source {
-                Source::Output(of) => outputs.get_or_insert_with(|| scene.engine.outputs(load))(*of),
-                _ => other(shown.get_or_insert_with(|| Shown::new(scene, setup, load)), inputs, *source),
+            *value = match &sources[*reference as usize] {
+                Source::Output(of) => outputs(*of),
+                source => other(shown.get_or_insert_with(|| Shown::new(scene, setup, load)), inputs, *source),
             };
         }
         drop(outputs);

@@ -248,7 +248,7 @@ impl<Q: Coordinates> ManyModes<Q> {
         let modes = modes.to_vec();
         let exact = |mode: &Mode| {
             let omega = mode.omega();
-            ExactContact::new(Oscillator { omega, zeta: mode.damping / (2.0 * mode.mass * omega) })
+            ExactContact::new(Oscillator::new(omega, mode.damping / (2.0 * mode.mass * omega)))
         };
         let left = inertia(&base, &modes, Side::Right, |_| 0.0);
         let [springs, dampers] = Restraint::about(&base, Side::Right, &Dissipators::NEW).rates(left);

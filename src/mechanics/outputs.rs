@@ -441,7 +441,7 @@ impl Output {
     }
 
     /// The gauge that measures the output.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn gauge(self, structure: &Structure) -> Option<&Gauge> {
         let gauges = structure.gauges();
         match self {

@@ -135,7 +135,7 @@ pub(crate) fn instantiate<F: Function>(
     sink: Sink,
     parts: impl FnOnce() -> Result<Parts, Failure>,
 ) -> *mut c_void {
-    let _control = Control::usual();
+    let _control = Control::usual_after(Control::read());
     let mut logger = Logger::new(sink);
     let create = || {
         let (model, interface, host, on) = parts()?;
@@ -214,12 +214,15 @@ pub(crate) unsafe fn call<F: Function>(
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
     let Some(component) = (unsafe { component::<F>(c) }) else { return Status::Error as c_int };
-    let _control = Control::usual();
+    let mut register = 0;
+    Control::store(&mut register);
     match component.availability.compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Relaxed) {
         Ok(_) => (),
         Err(BROKEN) => return Status::Fatal as c_int,
         Err(_) => return Status::Error as c_int,
     }
+    // The register is read after the exchange, which waits for the store in any case.
+    let _control = Control::usual_after(unsafe { ptr::read_volatile(&register) });
     // This is the only reference to the instance: no other call gets here while the component is busy.
     let instance = unsafe { &mut *component.instance.get() };
     let guarded = || {
@@ -262,10 +265,10 @@ impl Control {
     /// The sticky flags of the register, which are no control.
     const FLAGS: u32 = if cfg!(target_arch = "x86_64") { 0x3f } else { 0 };
 
-    /// Takes the usual control until the value is dropped.
+    /// Takes the usual control until the value is dropped, given the host's `register`.
     #[inline]
-    fn usual() -> Control {
-        let control = Control(Control::read() & !Control::FLAGS);
+    fn usual_after(register: u32) -> Control {
+        let control = Control(register & !Control::FLAGS);
         control.exchange(Control::USUAL);
         control
     }
@@ -280,16 +283,21 @@ impl Control {
 
     #[inline]
     fn read() -> u32 {
-        let mut _register: u32 = 0;
+        let mut register = 0;
+        Control::store(&mut register);
+        register
+    }
+
+    #[inline]
+    fn store(_register: &mut u32) {
         #[cfg(target_arch = "x86_64")]
         unsafe {
-            asm!("stmxcsr [{}]", in(reg) &raw mut _register, options(nostack, preserves_flags))
+            asm!("stmxcsr [{}]", in(reg) &raw mut *_register, options(nostack, preserves_flags))
         };
         #[cfg(target_arch = "aarch64")]
         unsafe {
-            asm!("mrs {:x}, fpcr", out(reg) _register, options(nostack, preserves_flags))
+            asm!("mrs {:x}, fpcr", out(reg) * _register, options(nostack, preserves_flags))
         };
-        _register
     }
 
     #[inline]

@@ -192,7 +192,7 @@ shared_functions! {
 
     SetRealInputDerivatives(
         vr: *const c_uint, nvr: size_t, order: *const c_int, value: *const c_double,
-    ) |instance| {
+    ) [often] |instance| {
         let (orders, slopes) = (values("order", order, nvr)?, values("value", value, nvr)?);
         instance.set_real_input_derivatives(values("vr", vr, nvr)?, orders, slopes)
     }

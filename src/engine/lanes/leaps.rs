@@ -102,7 +102,7 @@ impl<'a, Q: Coordinates> ContactLeaps<'a, Q> {
         }
         for (j, mode) in self.modes.iter_mut().enumerate() {
             let (numbers, motion) = match structure.modes().get(j).zip(modes.get(j)) {
-                Some((of, ExactContact { oscillator: Oscillator { omega, zeta }, .. })) => {
+                Some((of, ExactContact { oscillator: Oscillator { omega, zeta, .. }, .. })) => {
                     ([*omega, *zeta, of.part(1.0), moment(of)], [motion.state.u.of(j), motion.state.u_dot.of(j)])
                 }
                 None => ([1.0, 0.0, 0.0, 0.0], [0.0; 2]),
@@ -263,7 +263,7 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
                 }
                 let [m11, m12, m21, m22, step, ramp] = flow;
                 let ([omega, zeta, share, moment], from) = (numbers[j], [start.u[j], start.u_dot[j]]);
-                let oscillator = Oscillator { omega, zeta };
+                let oscillator = Oscillator::new(omega, zeta);
                 let (value, slope) = (a * share, slope * share);
                 let to = Flow { free: [m11, m12, m21, m22], step, ramp }.driven(from, value, slope);
                 let swing = oscillator.swing(from, value, slope, duration);
@@ -285,7 +285,7 @@ impl<S: Simd, Q: Coordinates, const N: usize> WithSimd for Leapt<'_, '_, S, Q, N
                 is_taken = is_taken & (is_passed | duration.is_at_most(row(&of.longest)));
                 let mut bend = Bend { slopes: [start, end], off_cubic: start };
                 for (j, [omega, zeta, share, _]) in numbers.into_iter().take(of.modes.len()).enumerate() {
-                    let oscillator = Oscillator { omega, zeta };
+                    let oscillator = Oscillator::new(omega, zeta);
                     let swing = oscillator.swing([start.u[j], start.u_dot[j]], a * share, slope * share, duration);
                     let [_, _, acceleration, jerk] = oscillator.swings(&swing);
                     let (damping, stiffness) = (none.like(2.0) * zeta * omega, omega * omega);
