@@ -5,7 +5,7 @@
 
 use crate::engine::motion::Motion;
 use crate::engine::phases;
-use crate::engine::sample::{Sample, shown};
+use crate::engine::sample::{Sample, edges_of, shown};
 use crate::engine::step::Step;
 use crate::engine::transition::Transition;
 use crate::levels::level::{Level, off_chord};
@@ -125,8 +125,7 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
 
     /// What the edges of the base carry in `state`, `tau` seconds after the start of the piece.
     pub(crate) fn edges(&self, tau: f64, state: &State<Q>) -> Reactions {
-        let motion = Motion { state: *state, ..*self.before };
-        Sample { motion, load: self.load.at(tau), level: self.level }.edges()
+        edges_of(self.level, self.before.phase, (state, self.load.at(tau)), self.before.kept())
     }
 
     /// The state `tau` seconds after the start of the piece.

@@ -43,7 +43,7 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
     pub fn edges(&self) -> Reactions {
-        edges(&self.instant(), self.level.subject(), &self.motion.dissipators, self.reactions())
+        edges_of(self.level, self.motion.phase, (&self.motion.state, self.load), self.motion.kept())
     }
 
     /// The forces of the restraints.
@@ -75,6 +75,19 @@ impl<Q: Coordinates> Sample<'_, Q> {
         let phase = motion.phase.in_motion(level.structure());
         shown::<Q>(*level, phase, (&motion.state, *load), motion.kept())
     }
+}
+
+/// The part of the reactions that the edges of the base of `level` carry, as [`Sample::edges`].
+pub(crate) fn edges_of<Q: Coordinates>(
+    level: &dyn Level<Q>,
+    phase: Phase,
+    (state, load): (&State<Q>, Load<Q>),
+    kept: Kept,
+) -> Reactions {
+    let phase = phase.in_motion(level.structure());
+    let x = Instant::of(level.structure(), phase, state, load);
+    let second = level.accelerations(phase, (state, load), kept);
+    edges(&x, level.subject(), kept.0, Reactions::at(&x, &second))
 }
 
 /// The structure of `level` as outputs read it, with θ̈ if one of them needs it.
