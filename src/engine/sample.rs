@@ -28,12 +28,8 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The structure at the instant, without θ̈.
     fn instant(&self) -> Instant<'_, f64, Q> {
-        Instant::of(
-            self.level.structure(),
-            self.motion.phase.in_motion(self.level.structure()),
-            &self.motion.state,
-            self.load,
-        )
+        let Sample { motion, load, level } = self;
+        Instant::of(level.structure(), motion.phase.in_motion(level.structure()), &motion.state, *load)
     }
 
     /// The reactions; once overturned, those of the instant before.
