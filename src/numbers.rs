@@ -105,8 +105,7 @@ macro_rules! operator {
             type Output = Self;
 
             #[inline(always)]
-            fn $name(self, $with: $other) -> Self {
-                let $own = self;
+            fn $name($own, $with: $other) -> Self {
                 $result
             }
         }
@@ -117,11 +116,11 @@ macro_rules! operator {
 /// to each part.
 macro_rules! operators {
     ([$($parameters:tt)*] $number:ty) => {
-        operator!([$($parameters)*] $number: Add<Self>, add, |own, other| own.plus(&other));
-        operator!([$($parameters)*] $number: Sub<Self>, sub, |own, other| own.plus(&-other));
-        operator!([$($parameters)*] $number: Mul<Self>, mul, |own, other| own.times(&other));
-        operator!([$($parameters)*] $number: Mul<f64>, mul, |own, factor| own.map(|part| part * factor));
-        operator!([$($parameters)*] $number: Div<f64>, div, |own, divisor| own.map(|part| part / divisor));
+        operator!([$($parameters)*] $number: Add<Self>, add, |self, other| self.plus(&other));
+        operator!([$($parameters)*] $number: Sub<Self>, sub, |self, other| self.plus(&-other));
+        operator!([$($parameters)*] $number: Mul<Self>, mul, |self, other| self.times(&other));
+        operator!([$($parameters)*] $number: Mul<f64>, mul, |self, factor| self.map(|part| part * factor));
+        operator!([$($parameters)*] $number: Div<f64>, div, |self, divisor| self.map(|part| part / divisor));
 
         impl<$($parameters)*> std::ops::Neg for $number {
             type Output = Self;

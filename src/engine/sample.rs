@@ -28,12 +28,8 @@ impl<Q: Coordinates> Sample<'_, Q> {
 
     /// The structure at the instant, without θ̈.
     fn instant(&self) -> Instant<'_, f64, Q> {
-        Instant::of(
-            self.level.structure(),
-            self.motion.phase.in_motion(self.level.structure()),
-            &self.motion.state,
-            self.load,
-        )
+        let Sample { motion, load, level } = self;
+        Instant::of(level.structure(), motion.phase.in_motion(level.structure()), &motion.state, *load)
     }
 
     /// The reactions; once overturned, those of the instant before.
@@ -86,7 +82,8 @@ pub(crate) fn edges_of<Q: Coordinates>(
 ) -> Reactions {
     let phase = phase.in_motion(level.structure());
     let x = Instant::of(level.structure(), phase, state, load);
-    edges(&x, level.subject(), kept.0, Reactions::at(&x, &level.accelerations(phase, (state, load), kept)))
+    let second = level.accelerations(phase, (state, load), kept);
+    edges(&x, level.subject(), kept.0, Reactions::at(&x, &second))
 }
 
 /// The structure of `level` as outputs read it, with θ̈ if one of them needs it.

@@ -6,7 +6,7 @@ use crate::engine::piece::Expansion;
 use crate::levels::level::edges;
 use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
-use crate::numbers::{Number, Turn};
+use crate::numbers::Number;
 use crate::series::extremes;
 use crate::series::taylor::{ORDERS, Series, ZERO, evaluate};
 use crate::series::terms::Terms;
@@ -30,9 +30,9 @@ pub(crate) fn over<Q: Coordinates>(expansion: &Expansion<Q>) -> Reactions<Terms>
     if let Some(drive) = expansion.drive() {
         push = push - drive * base.m_t;
     }
-    let Turn { sin, cos, .. } = &over.turn;
-    let R_h = push - (along * *cos + across * *sin).slope(arc.span);
-    let R_v = weight * base.m_t + (across * *cos - along * *sin).slope(arc.span);
+    let (right, up) = (along * over.turn.cos + across * over.turn.sin, across * over.turn.cos - along * over.turn.sin);
+    let R_h = push - right.slope(arc.span);
+    let R_v = weight * base.m_t + up.slope(arc.span);
     let R_m = match phase.properties().is_down {
         true => ramp(&|load| structure.pushes(load)[1]) - gauges.M_t.at(&over) + weight * offset,
         false => Terms::constant(0.0),

@@ -7,6 +7,14 @@ use rocking::run::record::Record;
 use rocking::run::{Run, Runs};
 use rocking::{Detail, Engine, LinearLoad, OneMass, Output, Parameters, Phase, Sample, State, Transition};
 
+/// Nodes and weights of Gauss's rule between 0 and 1.
+pub const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
 /// `count` samples of `a_g` (m/s²), `dt` (s) apart.
 pub fn sampled(count: usize, dt: f64, a_g: impl Fn(f64) -> f64) -> Record {
     let times = Vec::from_iter((0..count).map(|i| i as f64 * dt));

@@ -1,16 +1,8 @@
 //! Reactions on the ground and impulses of impacts: the balance of momentum.
 
-use crate::common::{Balance, balance, sampled, transitions_of};
+use crate::common::{Balance, GAUSS, balance, sampled, transitions_of};
 use rocking::run::{End, Run};
 use rocking::{Detail, Load, OneMass, Parameters, Reactions, Sample};
-
-/// Nodes and weights of Gauss and Legendre on [0, 1].
-const GAUSS: [(f64, f64); 4] = [
-    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
 
 /// Over a whole motion, momentum changes by what gravity, the ground's acceleration and F_t give it less what the
 /// reactions and the impulses of impacts hand on to the ground, whatever the level of detail.

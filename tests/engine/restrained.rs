@@ -339,12 +339,8 @@ fn a_transition_is_foreseen_whatever_brings_it() {
             assert!(transitions.len() > 5, "{detail:?}: {}", transitions.len());
             let (motion, ahead) = (GroundMotion::from(ground), 1e-10);
             let foresees = |time: f64| {
-                let settings = Settings {
-                    detail,
-                    tolerance: run.tolerance,
-                    vertical: ground.vertical().is_some(),
-                    ..Settings::default()
-                };
+                let (tolerance, vertical) = (run.tolerance, ground.vertical().is_some());
+                let settings = Settings { detail, tolerance, vertical, stops: false };
                 let mut engine = Engine::with(run.structure.clone(), run.initial, 0.0, settings).unwrap();
                 motion.advance(&mut engine, &mut Elapsed::default(), time, LinearLoad::default(), &mut ()).unwrap();
                 !engine.goes_on_for(ahead, motion.at(Elapsed::default().and(time)))

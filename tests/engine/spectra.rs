@@ -1,15 +1,12 @@
 //! Floor spectra against an integration of their own: Duhamel's integral over short steps by Gauss's rule, of samples of a_t.
 
-use crate::common::{shaking, transitions_of};
+use crate::common::{GAUSS, shaking, transitions_of};
 use crate::modes::three_storeys;
 use rocking::estimates::response_spectrum::{FloorContents, floor_spectra};
 use rocking::run::{End, Run, Runs};
 use rocking::{Ground, OneMass, Output, Parameters, Piece, Structure, Watch};
 use std::array;
 use std::f64::consts::TAU;
-
-/// Nodes and weights of Gauss's rule between 0 and 1.
-const GAUSS: [(f64, f64); 3] = [(0.1127016653792583, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.8872983346207417, 5.0 / 18.0)];
 
 /// The longest step, s: 0.16 rad of the stiffest oscillator.
 const STEP: f64 = 5e-4;
@@ -25,7 +22,7 @@ struct Oscillator {
 
 impl Oscillator {
     /// The motion after `tau` seconds, with the acceleration at Gauss's nodes.
-    fn after(&self, tau: f64, a: [f64; 3]) -> [f64; 2] {
+    fn after(&self, tau: f64, a: [f64; 4]) -> [f64; 2] {
         let &Oscillator { omega, zeta, motion: [u, u_dot], .. } = self;
         let free = |t: f64| {
             let (d, decay) = (omega * (1.0 - zeta * zeta).sqrt(), (-zeta * omega * t).exp());
@@ -48,7 +45,7 @@ impl Oscillator {
     }
 
     /// Goes on for `tau` seconds, at the nodes and the ends of which the acceleration is `a`, at other times `at`.
-    fn go_on(&mut self, tau: f64, (nodes, ends): ([f64; 3], [f64; 2]), at: &dyn Fn(f64) -> f64) {
+    fn go_on(&mut self, tau: f64, (nodes, ends): ([f64; 4], [f64; 2]), at: &dyn Fn(f64) -> f64) {
         let end = self.after(tau, nodes);
         let [first, last] = [self.absolute(self.motion, ends[0]), self.absolute(end, ends[1])];
         self.peak = self.peak.max(last[0].abs());

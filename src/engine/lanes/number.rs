@@ -159,12 +159,16 @@ impl<S: Simd> Answers<S> {
     }
 }
 
-operator!([S: Simd] Lanes<S>: Add<Self>, add, |a, b| Lanes { of: a.simd.add_f64s(a.of, b.of), ..a });
-operator!([S: Simd] Lanes<S>: Sub<Self>, sub, |a, b| Lanes { of: a.simd.sub_f64s(a.of, b.of), ..a });
-operator!([S: Simd] Lanes<S>: Mul<Self>, mul, |a, b| Lanes { of: a.simd.mul_f64s(a.of, b.of), ..a });
-operator!([S: Simd] Lanes<S>: Div<Self>, div, |a, b| Lanes { of: a.simd.div_f64s(a.of, b.of), ..a });
-operator!([S: Simd] Answers<S>: BitAnd<Self>, bitand, |a, b| Answers { of: a.simd.and_m64s(a.of, b.of), ..a });
-operator!([S: Simd] Answers<S>: BitOr<Self>, bitor, |a, b| Answers { of: a.simd.or_m64s(a.of, b.of), ..a });
+operator!([S: Simd] Lanes<S>: Add<Self>, add, |self, b| Lanes { of: self.simd.add_f64s(self.of, b.of), ..self });
+operator!([S: Simd] Lanes<S>: Sub<Self>, sub, |self, b| Lanes { of: self.simd.sub_f64s(self.of, b.of), ..self });
+operator!([S: Simd] Lanes<S>: Mul<Self>, mul, |self, b| Lanes { of: self.simd.mul_f64s(self.of, b.of), ..self });
+operator!([S: Simd] Lanes<S>: Div<Self>, div, |self, b| Lanes { of: self.simd.div_f64s(self.of, b.of), ..self });
+operator!([S: Simd] Answers<S>: BitAnd<Self>, bitand, |self, b| {
+    Answers { of: self.simd.and_m64s(self.of, b.of), ..self }
+});
+operator!([S: Simd] Answers<S>: BitOr<Self>, bitor, |self, b| {
+    Answers { of: self.simd.or_m64s(self.of, b.of), ..self }
+});
 
 impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;
