@@ -13,12 +13,12 @@ pub struct Residual {
     pub unit: &'static str,
     pub description: &'static str,
     is_of: fn(&Foundation) -> bool,
-    value: Value,
+    value: ResidualValue,
 }
 
 /// How a number follows from the end of a run.
 #[derive(Debug)]
-enum Value {
+enum ResidualValue {
     /// An output that adds up.
     Output(Output),
     /// x, m.
@@ -33,29 +33,29 @@ const YIELDS: fn(&Foundation) -> bool = |of| of.yields;
 const fn residual(
     [name, unit, description]: [&'static str; 3],
     is_of: fn(&Foundation) -> bool,
-    value: Value,
+    value: ResidualValue,
 ) -> Residual {
     Residual { name, unit, description, is_of, value }
 }
 
 const fn of_output(of: Output, is_of: fn(&Foundation) -> bool) -> Residual {
-    residual([of.symbol(), of.unit(), of.text()], is_of, Value::Output(of))
+    residual([of.symbol(), of.unit(), of.text()], is_of, ResidualValue::Output(of))
 }
 
 /// The numbers, in the order in which they are shown.
 pub const RESIDUALS: [Residual; 8] = [
-    residual(["x_end", "m", "way of the base at the end"], SLIDES, Value::Way),
+    residual(["x_end", "m", "way of the base at the end"], SLIDES, ResidualValue::Way),
     of_output(Output::slip_path, SLIDES),
     of_output(Output::E_friction, SLIDES),
     residual(
         ["theta_res", "rad", "rotation at rest on the settled ground"],
         YIELDS,
-        Value::AtRest(|_, [_, sin]| libm::asin(sin)),
+        ResidualValue::AtRest(|_, [_, sin]| libm::asin(sin)),
     ),
     residual(
         ["settlement_res", "m", "settlement at rest of the lower outer point"],
         YIELDS,
-        Value::AtRest(|ground, [y, sin]| {
+        ResidualValue::AtRest(|ground, [y, sin]| {
             let outer = [0, ground.points.len() - 1].map(|i| y - ground.points[i].xi * sin);
             -outer[0].min(outer[1])
         }),
@@ -77,9 +77,9 @@ impl Residual {
     pub fn of<Q: Coordinates>(&self, structure: &Structure, motion: &Motion<Q>) -> f64 {
         let Some(ground) = Q::foundation(structure) else { return f64::NAN };
         match self.value {
-            Value::Output(of) => of.added_up(structure, motion.kept()).unwrap_or(f64::NAN),
-            Value::Way => motion.state.u.slide(ground).unwrap_or(f64::NAN),
-            Value::AtRest(value) => {
+            ResidualValue::Output(of) => of.added_up(structure, motion.kept()).unwrap_or(f64::NAN),
+            ResidualValue::Way => motion.state.u.slide(ground).unwrap_or(f64::NAN),
+            ResidualValue::AtRest(value) => {
                 let now = Some(libm::sin(motion.state.theta)).filter(|_| !motion.phase.properties().is_over);
                 let rest = now.and_then(|now| ground.at_rest(structure, now, &|i| motion.settled.as_ref()[i]));
                 rest.map_or(f64::INFINITY, |rest| value(ground, rest))
