@@ -24,7 +24,7 @@ use crate::mechanics::lateral::Coordinates;
 use crate::{Engine, Modes, Sample, Watch};
 pub use course::{End, Ending, Finish, LONGEST_REST, MOST_STEPS, Run, RunError, Starts};
 use curve::RunCurve;
-use fall::{FallPeaks, RunResult};
+use fall::RunResult;
 use levels::Comparison;
 use peaks::Peaks;
 use samples::Sampler;
@@ -152,6 +152,6 @@ pub fn found_each<Q: Runs>(runs: &[Run<Q>], done: lanes::OnResult<Result<RunResu
 
 /// Follows `runs` to their ends like [`found_each`], and tells `done` of each how it ended, the peak of θ by then, and its impacts.
 #[cfg(feature = "lanes")]
-pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: lanes::OnResult<(Result<Finish<Q>, RunError>, FallPeaks)>) {
+pub fn rocked_each<Q: Runs>(runs: &[Run<Q>], done: lanes::OnResult<(Result<Finish<Q>, RunError>, fall::FallPeaks)>) {
     (Q::compiled().each.1)(runs, done);
 }
