@@ -240,7 +240,7 @@ impl<Q: Coordinates> LaneRuns<'_, Q> {
     }
 }
 
-/// The `level` by its type, if it is Eqs 5 and 6.
+/// The `level` by its type, if it is Eqs 5 and 6. A fixed base, which never rocks, has the same type.
 #[inline(always)]
 pub(super) fn by_equations_5_and_6<Q: Coordinates>(level: &dyn Level<Q>) -> Option<&Elastic<NonlinearRocking>> {
     (level as &dyn Any).downcast_ref()
