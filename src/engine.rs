@@ -442,7 +442,7 @@ impl<Q: Coordinates> Engine<Q> {
         self.advance_within(self.motion.work.steps + MAX_STEPS_PER_ADVANCE, interval, load.into(), watch)
     }
 
-    /// Advances until `last_step` steps have been taken since the start.
+    /// As [`Engine::advance`], but fails as too long if the motion needs more than `last_step` steps since its start.
     #[inline]
     pub fn advance_within<W: Watch<Q>>(
         &mut self,
@@ -689,7 +689,7 @@ impl<Q: Coordinates, E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool> Loop<'_, Q
             }
             if elapsed >= advance.end {
                 if elapsed > 0.0 {
-                    let reached = level.longest_step() * (last_step - motion.work.steps) as f64;
+                    let reached = level.longest_step() * last_step.saturating_sub(motion.work.steps) as f64;
                     if interval - elapsed > reached {
                         return Err(AdvanceError::TooLong { time: motion.time + reached, until });
                     }

@@ -116,11 +116,11 @@ macro_rules! operator {
 /// to each part.
 macro_rules! operators {
     ([$($parameters:tt)*] $number:ty) => {
-        operator!([$($parameters)*] $number: Add<Self>, add, |self, other| self.plus(&other));
-        operator!([$($parameters)*] $number: Sub<Self>, sub, |self, other| self.plus(&-other));
-        operator!([$($parameters)*] $number: Mul<Self>, mul, |self, other| self.times(&other));
-        operator!([$($parameters)*] $number: Mul<f64>, mul, |self, factor| self.map(|part| part * factor));
-        operator!([$($parameters)*] $number: Div<f64>, div, |self, divisor| self.map(|part| part / divisor));
+        $crate::numbers::operator!([$($parameters)*] $number: Add<Self>, add, |self, other| self.plus(&other));
+        $crate::numbers::operator!([$($parameters)*] $number: Sub<Self>, sub, |self, other| self.plus(&-other));
+        $crate::numbers::operator!([$($parameters)*] $number: Mul<Self>, mul, |self, other| self.times(&other));
+        $crate::numbers::operator!([$($parameters)*] $number: Mul<f64>, mul, |self, factor| self.map(|part| part * factor));
+        $crate::numbers::operator!([$($parameters)*] $number: Div<f64>, div, |self, divisor| self.map(|part| part / divisor));
 
         impl<$($parameters)*> std::ops::Neg for $number {
             type Output = Self;

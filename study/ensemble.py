@@ -131,7 +131,9 @@ def measure():
         for scale in SCALES:
             fr.simulate(pier, record.scaled(scale), tolerance=tolerance, **of_run)
 
-    in_lanes = lambda tolerance: fr.sweep(pier, record, scale=SCALES, tolerance=tolerance, threads=1, **of_run)
+    def in_lanes(tolerance):
+        fr.sweep(pier, record, scale=SCALES, tolerance=tolerance, threads=1, **of_run)
+
     exact = ours(1e-13)
     ways = [(name, tolerance, way, lambda tolerance=tolerance: ours(tolerance))
             for name, way in ((ALONE, alone), (LANES, in_lanes)) for tolerance in OURS]

@@ -21,9 +21,13 @@ class Pier(Structure):
     def __init__(self, fmu: str):
         self.line_end, self.time, self.is_transition_due = [0.0, 0.0], 0.0, False
         owner = weakref.proxy(self)  # the instance must not keep its owner
+
+        def at_the_end_of_the_step(_environment, _time, *_):
+            owner.set(owner.line_end)
+
         inputs = ["a_g", "F_t"]
         super().__init__(fmu, inputs, ["delta_t", "v_t"], eventModeUsed=True, earlyReturnAllowed=True,
-                         intermediateUpdate=lambda *_: owner.set(owner.line_end), requiredIntermediateVariables=unpacked(fmu).references(inputs))
+                         intermediateUpdate=at_the_end_of_the_step, requiredIntermediateVariables=unpacked(fmu).references(inputs))
 
     def set(self, values) -> None:
         self.instance.set_reals(**dict(zip(self.inputs, values)))

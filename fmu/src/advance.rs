@@ -21,7 +21,7 @@ impl<Q: Runs> Scene<Q> {
         let start = *self.engine.motion();
         let step = self.engine.structure().vibration().rocking[1].recip().min(1e-3);
         let last_step = start.work.steps + REHEARSED_STEPS;
-        _ = self.engine.advance_within(last_step, step, inputs, &mut ()); // if it fails, the host's own step says why
+        _ = self.engine.advance_within(last_step, step, inputs, &mut ()); // a failure comes again in the host's own step
         self.engine.set_motion(start);
     }
 

@@ -39,7 +39,7 @@ pub struct RockingModel<Q: Runs = f64> {
     /// The record that was followed last, which is not parsed anew for another run.
     kept: Option<CachedRecord>,
     /// Whether the host has been warned that it holds a ground acceleration from sample to sample.
-    is_warned: bool,
+    told_of_stairs: bool,
 }
 
 /// An instance's part of an FMU state: the settings before the start, the inputs from the present time on, and the course of a
@@ -67,7 +67,16 @@ impl<Q: Runs> RockingModel<Q> {
     pub fn new(archive: Archive) -> RockingModel<Q> {
         let (table, setup) = (VariableTable::new(&archive.contents), Setup::new(&archive.contents));
         let inputs = Inputs::new(&archive.contents.structure);
-        RockingModel { table, archive, setup, inputs, scene: None, has_started: false, kept: None, is_warned: false }
+        RockingModel {
+            table,
+            archive,
+            setup,
+            inputs,
+            scene: None,
+            has_started: false,
+            kept: None,
+            told_of_stairs: false,
+        }
     }
 
     /// The structure in motion, or at its start with what has been set so far; its record is in the archive, or on disk.
@@ -318,8 +327,8 @@ impl<Q: Runs> Model for RockingModel<Q> {
             inputs.pass(reached - point, true);
         }
         known.iter().for_each(|known| warn(logger, known, &scene.validity));
-        if inputs.makes_stairs() && !self.is_warned {
-            self.is_warned = true;
+        if inputs.makes_stairs() && !self.told_of_stairs {
+            self.told_of_stairs = true;
             warn_of_stairs(logger, reached);
         }
         Ok(match progress {
@@ -389,7 +398,7 @@ impl<Q: Runs> Model for RockingModel<Q> {
             scene = scene.or_else(|| self.scene.take());
         }
         self.has_started = has_started;
-        self.is_warned &= has_started;
+        self.told_of_stairs &= has_started;
         (self.setup, self.inputs, self.scene) = (setup, inputs, scene);
         Ok(())
     }

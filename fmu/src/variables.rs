@@ -196,8 +196,8 @@ fn locals() -> Vec<VariableRow> {
         ground("a_v_ground", "vertical ground acceleration: a_v and record_v", true, "a_v", "record_v"),
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
         kept("e_p2", "m", "plastic elongation of the elastoplastic dissipator at -xi_d", |d| d.plastic[1], PLASTIC),
-        kept("E_viscous", "J", "energy dissipated by viscous restraints", |d| d.viscous, &[]),
-        kept("E_hysteretic", "J", "energy dissipated by elastoplastic restraints", |d| d.hysteretic, &[]),
+        kept("E_viscous", "J", "energy dissipated by the viscous dissipators", |d| d.viscous, &[]),
+        kept("E_hysteretic", "J", "energy dissipated by the elastoplastic dissipators", |d| d.hysteretic, &[]),
         (phase.from(["theta_0"]), source),
         counted(
             "transitions",

@@ -53,7 +53,13 @@ impl Rises {
         rises
     }
 
-    /// The height over the step at ξ with `more` height, plus τ times its rate, and what counts as 0 of it.
+    /// The height over the step at ξ plus τ times its rate, and what counts as 0 of it.
+    #[inline]
+    fn at(&self, xi: f64, tau: f64) -> (Series, f64) {
+        self.above(0.0, xi, tau)
+    }
+
+    /// The same with `more` height.
     #[inline]
     fn above(&self, more: f64, xi: f64, tau: f64) -> (Series, f64) {
         let Rises { y, sin, order, scale, .. } = self;
@@ -210,7 +216,7 @@ impl<Q: Coordinates> Guard<Q> for Tied {
         }
         let rises = Rises::new(level, arc);
         if k_t > 0.0 {
-            let ((height, rounding), slack) = (rises.above(0.0, 0.0, 0.0), P_0 / k_t - foundation.y_s);
+            let ((height, rounding), slack) = (rises.at(0.0, 0.0), P_0 / k_t - foundation.y_s);
             let (opens, sign) = if contact.is_slack { (-1.0, 1) } else { (1.0, -1) };
             let gap = Gap::new(&height[..=rises.order], opens, opens * slack + rounding);
             see(&mut found, first_time_all_closed([gap], reach), usize::from(TENDON), sign);
@@ -220,7 +226,7 @@ impl<Q: Coordinates> Guard<Q> for Tied {
             match start.dissipators.yields[j] {
                 0 => {
                     for sign in [1_i8, -1] {
-                        let mut height = rises.above(0.0, xi, 0.0);
+                        let mut height = rises.at(xi, 0.0);
                         height.0[0] -= foundation.y_s + start.dissipators.plastic[j] + f64::from(sign) * F_y / k_d;
                         height.1 += ROUNDING * F_y / k_d;
                         let gaps = [&height, &rate].map(|of| rises.gap(of, -f64::from(sign)));
@@ -274,7 +280,7 @@ pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Option<Dissipators> {
     let end = || Q::evaluate(arc.used(&arc.u), reach);
     if base.is_restrained() {
         let rises = Rises::new(level, arc);
-        let of = |j: usize| evaluate(&rises.above(0.0, places(base)[j], 0.0).0[..=arc.order], reach) - ground.y_s;
+        let of = |j: usize| evaluate(&rises.at(places(base)[j], 0.0).0[..=arc.order], reach) - ground.y_s;
         let power = |(c, rate): (f64, Terms)| c * arc.span * product_integral(rate.used(), rate.used(), reach);
         moved = start.dissipators.stepped(base, of, dampers_on_ground(base, arc, ground).map(power));
     }

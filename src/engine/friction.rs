@@ -22,12 +22,17 @@ use crate::{Base, Foundation, Friction, Output, Phase, PressedPoints, Side, Stat
 /// The base, which may slide, sticks, slides or flies.
 pub(crate) struct Sliding;
 
-/// The frictions, each at its number in a branch.
+/// The frictions, each at its [`number`] in a branch.
 const FRICTIONS: [Friction; 4] =
     [Friction::Sticks, Friction::Slides(Side::Left), Friction::Slides(Side::Right), Friction::Free];
 
-fn number(friction: Friction) -> i8 {
-    FRICTIONS.iter().position(|of| *of == friction).expect("it is one of them") as i8
+const fn number(friction: Friction) -> i8 {
+    match friction {
+        Friction::Sticks => 0,
+        Friction::Slides(Side::Left) => 1,
+        Friction::Slides(Side::Right) => 2,
+        Friction::Free => 3,
+    }
 }
 
 /// The friction that a base needs to stick over a step, N: R_h = m_t a_g − Σ F + (S_1 sin θ + μ cos θ)¨ (S2).

@@ -32,12 +32,12 @@ pub(crate) struct Rules<Q: Coordinates = f64> {
     pub stays: Option<fn(&Step<Q>) -> bool>,
     pub guards: &'static [&'static dyn Guard<Q>],
     /// The dissipators at the reach of a step, if a step moves them.
-    pub moved: Option<fn(&Step<Q>) -> Option<Dissipators>>,
+    pub moved: fn(&Step<Q>) -> Option<Dissipators>,
 }
 
 impl<Q: Coordinates> Rules<Q> {
     /// A phase in which the base does not move, without guards.
-    pub(super) const RESTING: Rules<Q> = Rules { lasts: None, stays: None, guards: &[], moved: None };
+    pub(super) const RESTING: Rules<Q> = Rules { lasts: None, stays: None, guards: &[], moved: |_| None };
 
     /// Full contact that is held after too many transitions.
     const HELD: &'static Rules<Q> = &Rules { lasts: Some(Motion::held), ..Rules::RESTING };
@@ -49,25 +49,25 @@ impl<Q: Coordinates> Rules<Q> {
     const ROCKING: &'static Rules<Q> = &Rules {
         stays: Some(|step| stays_about(step.arc, step.side)),
         guards: &[&Overturning, &Impact],
-        moved: Some(yielding::moved),
+        moved: yielding::moved,
         ..Rules::RESTING
     };
 
     /// Rocking with dissipators that may yield.
     const ROCKING_YIELDING: &'static Rules<Q> =
-        &Rules { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..Rules::RESTING };
+        &Rules { guards: &[&Yielding, &Overturning, &Impact], moved: yielding::moved, ..Rules::RESTING };
 
     /// Ground that gives.
     const ON_GROUND: &'static Rules<Q> = &Rules { guards: &[&Overturning, &Points], ..Rules::RESTING };
 
     /// Ground that gives, with a tendon or dissipators, or with points that may yield, or under a base that may slide.
     const ON_GROUND_TIED: &'static Rules<Q> =
-        &Rules { guards: &[&Overturning, &Points, &Tied, &Sliding], moved: Some(contacts::moved), ..Rules::RESTING };
+        &Rules { guards: &[&Overturning, &Points, &Tied, &Sliding], moved: contacts::moved, ..Rules::RESTING };
 
     /// At the reach of `step`, the dissipators if it moves them, and how far points have settled for good if one yields.
     #[inline]
     pub(crate) fn moved(&self, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
-        let mut moved = self.moved.and_then(|moved| moved(step));
+        let mut moved = (self.moved)(step);
         let settled = (step.contact.yields != 0).then(|| contacts::settled(step));
         settled.iter().for_each(|settled| moved.iter_mut().for_each(|of| contacts::settle(step, settled, of)));
         (moved, settled)

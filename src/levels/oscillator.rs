@@ -18,8 +18,9 @@ use std::cell::{RefCell, RefMut};
 pub(crate) struct Oscillator<N = f64> {
     pub omega: N,
     pub zeta: N,
-    /// 1/ω², s², and 2ζ/ω, s, which every leap reads: divisions would take a fifth of its time.
+    /// 1/ω², s². Every leap reads this and the next: divisions would take a fifth of its time.
     per_stiffness: N,
+    /// 2ζ/ω, s.
     lag: N,
 }
 

@@ -1,6 +1,6 @@
 //! A value with its rate, by the rules of differentiation.
 
-use super::{Angle, Number, Ordered, Turn, operator, operators};
+use super::{Angle, Number, Ordered, Turn, operators};
 
 /// A value and its time derivative. The parts may be any number: the rate of a rate is a second derivative.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! A bound of a magnitude.
 
-use super::{Number, operator, operators};
+use super::{Number, operators};
 
 /// The largest magnitude that a quantity can have over a piece.
 #[derive(Clone, Copy, Debug)]

@@ -70,10 +70,7 @@ pub struct Peaks {
     pub(super) searched: Vec<Searched>,
     /// Outputs whose peaks come with one of these: its place, and the multiple that they are of it.
     with: Vec<(Output, usize, f64)>,
-    /// Prestress and stiffness of the tendon, and the start of the motion, s.
-    tendon: [f64; 3],
-    /// How ties elongate at this level of detail.
-    angles: Angles,
+    tendon: Tendon,
     /// Peaks of the forces of the dissipators, unless θ alone is searched.
     pair: Option<[Peak; 2]>,
     /// Right-hand-side evaluations that the search took.
@@ -104,6 +101,18 @@ impl Searched {
     }
 }
 
+/// The tendon of a base, as far as the peak of its force needs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Tendon {
+    /// Prestress and stiffness.
+    P_0: f64,
+    k_t: f64,
+    /// Elongation at this level of detail.
+    angles: Angles,
+    /// The start of the motion, s.
+    start: f64,
+}
+
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
@@ -131,8 +140,8 @@ impl Peaks {
                 None => alone.extend(search(output).map(|_| output)),
             }
         }
-        let (tendon, angles) = ([P_0, k_t, time], detail.angles());
-        Peaks { B, searched, with, tendon, angles, pair: Some([none; 2]), evaluations: 0 }
+        let tendon = Tendon { P_0, k_t, angles: detail.angles(), start: time };
+        Peaks { B, searched, with, tendon, pair: Some([none; 2]), evaluations: 0 }
     }
 
     /// Peak of an output that has one.
@@ -167,8 +176,8 @@ impl Peaks {
         if let Some(of) = self.searched.iter().find(|of| of.output == Output::P_t) {
             return of.peak;
         }
-        let (theta, [P_0, k_t, start]) = (self.theta(), self.tendon);
-        let magnitude = P_0 + k_t * self.B * self.angles.chord(theta.magnitude, 0.0).length;
+        let (theta, &Tendon { P_0, k_t, angles, start }) = (self.theta(), &self.tendon);
+        let magnitude = P_0 + k_t * self.B * angles.chord(theta.magnitude, 0.0).length;
         Peak { magnitude, time: if k_t > 0.0 { theta.time } else { start } }
     }
 
@@ -311,7 +320,7 @@ impl Peaks {
     /// Looks for larger forces of the dissipators in `piece`. They depend on θ and θ̇ alone, and on y on ground that gives.
     pub(super) fn look_at_dissipators<Q: Coordinates>(&mut self, piece: &Piece<Q>) {
         let (structure, before) = (piece.level.structure(), piece.before);
-        let (angles, Some(pair)) = (self.angles, &mut self.pair) else { return };
+        let (angles, Some(pair)) = (self.tendon.angles, &mut self.pair) else { return };
         let forces = |state: &State<Q>| {
             let x = Instant::of(structure, before.phase, state, piece.load.value);
             of_pair(restraints(&x, angles, &before.dissipators))

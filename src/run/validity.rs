@@ -306,7 +306,17 @@ impl<Q: Coordinates> Watch<Q> for Validity {
             TransitionKind::Impact(side) => (side.opposite(), Phase::Rocking(side)),
             // s θ falls to 0
             TransitionKind::Landing | TransitionKind::Settling => (Side::of(-before.theta_dot), Phase::FullContact),
-            _ => return,
+            TransitionKind::Uplift(_)
+            | TransitionKind::Overturning(_)
+            | TransitionKind::Yielding(_)
+            | TransitionKind::Unloading(_)
+            | TransitionKind::Touch(_)
+            | TransitionKind::Release(_)
+            | TransitionKind::Settles(_)
+            | TransitionKind::Holds(_)
+            | TransitionKind::Friction(_)
+            | TransitionKind::Taut
+            | TransitionKind::Slack => return,
         };
         self.found.settlings += u64::from(kind == TransitionKind::Settling);
         let is_landing = phase.properties().is_down;

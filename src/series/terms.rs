@@ -1,7 +1,7 @@
 //! A quantity over a step as a power series.
 
 use super::taylor::{MAX_ORDER, Series, reciprocal};
-use crate::numbers::{Angle, Number, Turn, operator, operators};
+use crate::numbers::{Angle, Number, Turn, operators};
 use wide::f64x2;
 
 /// Coefficients in σ, as many as the longest series has, rounded up to whole fours.

@@ -83,9 +83,8 @@ static OF_STRUCTURE: [Derived<Structure>; 9] = [
     derived!("g" ["m/s2"] "acceleration of gravity", "", |of| of.base().g),
 ];
 
-/// The numbers of ground that gives, of a structure that stands there; the last two are those of a base that may slide, and of ground that
-/// yields, and otherwise no finite numbers.
-static OF_GROUND: [Derived<Structure>; 8] = [
+/// The numbers of ground that gives, of a structure that stands there.
+static OF_GROUND: [Derived<Structure>; 6] = [
     derived!("k_v" ["N/m"] "vertical stiffness of the ground (Winkler springs)", "", |of| of.ground().sum(0)),
     derived!("k_r" ["N.m/rad"] "rotational stiffness of the ground", "", |of| of.ground().sum(2)),
     derived!("f_v" ["Hz"] "frequency of the bounce on the ground", "", |of| of.ground().omega_v(of.base()) / TAU),
@@ -94,6 +93,10 @@ static OF_GROUND: [Derived<Structure>; 8] = [
         of.frequencies_on_ground()[0] / TAU
     }),
     derived!("y_s" ["m"] "height of the base at rest above the unloaded ground", "", |of| of.ground().y_s),
+];
+
+/// The numbers of a base that may slide, and of ground that yields.
+static OF_STRENGTH: [Derived<Structure>; 2] = [
     derived!("mu_c" ["1"] "coefficient of friction of the base", "", |of| of.ground().mu_c.unwrap_or(f64::NAN)),
     derived!("fs" ["1"] "least capacity of a contact point over its load at rest", "", |of| of.ground().reserve()),
 ];
@@ -104,8 +107,10 @@ impl Structure {
     pub fn derived(&self) -> impl Iterator<Item = ([&'static str; 3], f64)> {
         let of = |of: &Derived<Structure>| ([of.name, of.unit, of.description], (of.value)(self));
         let ties = TIES.iter().map(|of| ([of.name, of.unit, of.description], (of.get)(&self.base().ties)));
-        let of_ground = OF_GROUND.iter().filter(|_| self.foundation().is_some()).map(of);
-        OF_STRUCTURE.iter().map(of).chain(ties).chain(of_ground.filter(|(_, value)| value.is_finite()))
+        let of_ground = OF_GROUND.iter().filter(|_| self.foundation().is_some());
+        let of_strength = OF_STRENGTH.iter().filter(|_| self.foundation().is_some()).map(of);
+        let of_strength = of_strength.filter(|(_, value)| value.is_finite());
+        OF_STRUCTURE.iter().map(of).chain(ties).chain(of_ground.map(of)).chain(of_strength)
     }
 
     /// The numbers of each mode, lowest frequency first.

@@ -103,8 +103,19 @@ impl Described {
     }
 
     fn in_si(self) -> Result<Description, Refused> {
-        let (units, base, ground) = (self.units, self.base, self.ground);
-        let Described { zeta, mut storeys, p_delta, mut floors, mut K, mut modes, mut total, keep, .. } = self;
+        let Described {
+            units,
+            base,
+            zeta,
+            mut storeys,
+            p_delta,
+            mut floors,
+            mut K,
+            mut modes,
+            mut total,
+            ground,
+            keep,
+        } = self;
         let to_si = |of: &Quantity<f64>, value: &mut f64| *value = units.in_si(*value, of.unit);
         for Storey { m, k, .. } in &mut storeys {
             to_si(&MASS, m);

@@ -47,6 +47,7 @@ pub struct Map {
     /// Whether the axes are in units of the structure.
     pub is_dimensionless: bool,
     pub detail: Detail,
+    /// Relative tolerance of the results.
     pub tolerance: f64,
     pub finds_condition: bool,
 }
@@ -110,6 +111,7 @@ pub struct MapPoint {
     pub impacts: u64,
     /// The largest |θ|/α_cg, exact.
     pub theta: f64,
+    /// Transitions of every kind.
     pub transitions: u64,
     /// When the run ended, s after the start of the pulse.
     pub end: f64,

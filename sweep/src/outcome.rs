@@ -35,6 +35,7 @@ pub struct Summary {
     pub peaks: PeakMagnitudes,
     pub transitions: u64,
     pub steps: u64,
+    /// Right-hand-side evaluations.
     pub evaluations: u64,
     /// Sure digits of the run, if they are found: [`digits_of_run`](crate::condition::digits_of_run).
     pub digits: Option<u8>,

@@ -108,6 +108,7 @@ pub struct Conditions {
     /// State at the first sample, with u and u̇ of each floor, or of none.
     pub initial: State<Vec<f64>>,
     pub detail: Detail,
+    /// Relative tolerance of the results.
     pub tolerance: f64,
     /// Time from the first sample to the end of a run, s; without it a run goes on until nothing more can happen.
     pub duration: Option<f64>,

@@ -221,7 +221,7 @@ pub(crate) unsafe fn call<F: Function>(
         Err(BROKEN) => return Status::Fatal as c_int,
         Err(_) => return Status::Error as c_int,
     }
-    // The register is read after the exchange, which waits for the store in any case.
+    // The exchange waits until the register is stored. The read is volatile so that it does not come before.
     let _control = Control::usual_after(unsafe { ptr::read_volatile(&register) });
     // This is the only reference to the instance: no other call gets here while the component is busy.
     let instance = unsafe { &mut *component.instance.get() };
