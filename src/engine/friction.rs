@@ -16,7 +16,7 @@ use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
 use crate::series::extremes::off_chord;
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{ORDERS, Series, ZERO, evaluate, product, weighed_sum};
+use crate::series::taylor::{ORDERS, Series, ZERO, evaluate, product, sum_of_magnitudes, weighed_sum};
 use crate::{Base, Foundation, Friction, Output, Phase, PressedPoints, Side, State, Structure};
 
 /// The base, which may slide, sticks, slides or flies.
@@ -71,8 +71,8 @@ impl Needed {
         needed
     }
 
-    /// Whether a base under this `normal` force, with the friction `mu_c`, certainly sticks up to `reach`: what both ends have left, less how
-    /// far either force leaves its chord.
+    /// Whether a base under this `normal` force, with the friction `mu_c`, certainly sticks up to `reach`: far from slipping by the sums of the
+    /// terms, otherwise by what both ends have left, less how far either force leaves its chord.
     fn is_there<Q: Coordinates>(
         &self,
         structure: &Structure,
@@ -80,11 +80,14 @@ impl Needed {
         arc: &Arc<Q>,
         reach: f64,
     ) -> bool {
-        let [normal, linear] = [normal, &self.linear].map(|of| arc.used(of));
+        let ([normal, linear], rest) = ([normal, &self.linear].map(|of| arc.used(of)), self.rest(structure, arc));
+        if mu_c * (2.0 * normal[0] - sum_of_magnitudes(normal)) > sum_of_magnitudes(linear) + rest {
+            return true;
+        }
         let left = |normal: f64, linear: f64| mu_c * normal - linear.abs();
         let least = left(normal[0], linear[0]).min(left(evaluate(normal, reach), evaluate(linear, reach)));
         let off = mu_c * off_chord(normal, reach) + off_chord(linear, reach);
-        least > off + self.rest(structure, arc)
+        least > off + rest
     }
 
     /// Bound of the part that is left out.
