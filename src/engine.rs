@@ -725,7 +725,7 @@ impl<Q: Coordinates, E: FnMut(Phase, &Start<Q>, &mut Arc<Q>) -> bool> Loop<'_, Q
             let mut step =
                 Step { level, side, contact, start: &begin, arc: self.arc, reach: self.arc.reach, is_cut: false };
             let closed = first(watched, &mut step);
-            let (reach, (moved, settled)) = (step.reach, watched.moved(&step));
+            let (reach, (moved, settled)) = (step.reach, (watched.moved)(&step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
             let has_stalled = || closed.is_none() && duration <= STALLED / level.structure().vibration().rocking[1];

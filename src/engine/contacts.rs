@@ -8,7 +8,7 @@
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
-use crate::engine::step::{Branch, Step, see};
+use crate::engine::step::{Branch, Moved, Step, see};
 use crate::engine::transition::TransitionKind;
 use crate::engine::yielding::product_integral;
 use crate::levels::level::Level;
@@ -17,7 +17,7 @@ use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::contact::heights;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint::{Dissipators, dampers_on_ground, places};
+use crate::mechanics::restraint::{dampers_on_ground, places};
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate, sum_of_magnitudes};
 use crate::series::terms::Terms;
@@ -269,12 +269,13 @@ impl<Q: Coordinates> Guard<Q> for Tied {
     }
 }
 
-/// The dissipators at the reach of a step, and what friction has taken there, if the step changes them.
-pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Option<Dissipators> {
+/// The dissipators at the reach of a step, and what friction and points that yield have taken there, if the step changes them; and how far
+/// points have settled for good.
+pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Moved<Q> {
     let &Step { level, contact, start, arc, reach, .. } = step;
     let base = level.structure().base();
     if !base.is_restrained() && contact.yields == 0 && contact.friction.sign() == 0.0 {
-        return None;
+        return (None, None);
     }
     let (ground, mut moved) = (level.structure().ground(), *start.dissipators);
     let end = || Q::evaluate(arc.used(&arc.u), reach);
@@ -291,23 +292,17 @@ pub(crate) fn moved<Q: Coordinates>(step: &Step<Q>) -> Option<Dissipators> {
         moved.slip += side.sign() * (end().of(place) - arc.u[0].of(place));
         moved.friction += side.sign() * mu_c * rubbed;
     }
-    Some(moved)
-}
-
-/// Adds what points that yield have taken over a step, at the end of which they have `settled` by so much.
-pub(super) fn settle<Q: Coordinates>(
-    &Step { level, contact, start, .. }: &Step<Q>,
-    settled: &Q::Settled,
-    moved: &mut Dissipators,
-) {
-    let points = &level.structure().ground().points;
-    for (i, point) in points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
-        moved.settling += point.q * (settled.as_ref()[i] - start.settled[i]);
+    let settled = (contact.yields != 0).then(|| settled(step));
+    if let Some(settled) = &settled {
+        for (i, point) in ground.points.iter().enumerate().filter(|(i, _)| contact.yields(*i)) {
+            moved.settling += point.q * (settled.as_ref()[i] - start.settled[i]);
+        }
     }
+    (Some(moved), settled)
 }
 
 /// How far points have settled for good at the reach of a step.
-pub(super) fn settled<Q: Coordinates>(&Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> Q::Settled {
+fn settled<Q: Coordinates>(&Step { level, contact, start, arc, reach, .. }: &Step<Q>) -> Q::Settled {
     let mut settled = Q::Settled::default();
     settled.as_mut().iter_mut().zip(start.settled).for_each(|(settled, start)| *settled = *start);
     let ground = level.structure().ground();

@@ -22,11 +22,12 @@ use crate::{Base, Foundation, Friction, Output, Phase, PressedPoints, Side, Stat
 /// The base, which may slide, sticks, slides or flies.
 pub(crate) struct Sliding;
 
-/// The frictions, each at its [`number`] in a branch.
+/// All frictions.
 const FRICTIONS: [Friction; 4] =
     [Friction::Sticks, Friction::Slides(Side::Left), Friction::Slides(Side::Right), Friction::Free];
 
-const fn number(friction: Friction) -> i8 {
+/// The number of `friction` in a branch.
+fn number(friction: Friction) -> i8 {
     match friction {
         Friction::Sticks => 0,
         Friction::Slides(Side::Left) => 1,
@@ -212,7 +213,7 @@ impl<Q: Coordinates> Guard<Q> for Sliding {
 
     fn apply(&self, level: &dyn Level<Q>, motion: &mut Motion<Q>, branch: Branch) -> Option<TransitionKind> {
         let Phase::OnGround(contact) = &mut motion.phase else { return None };
-        let (before, after) = (contact.friction, *FRICTIONS.get(branch.sign as usize)?);
+        let (before, after) = (contact.friction, FRICTIONS.into_iter().find(|of| number(*of) == branch.sign)?);
         contact.friction = after;
         // the friction from the start on is no change of it
         if branch.which == 1 && motion.transitions == 0 && motion.work.steps <= 1 {

@@ -8,14 +8,13 @@ use crate::engine::friction::Sliding;
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
-use crate::engine::step::{Branch, Step};
+use crate::engine::step::{Branch, Moved, Step};
 use crate::engine::transition::{TransitionKind, enter};
 use crate::engine::yielding::{self, Yielding};
 use crate::levels::level::{Level, LevelSubject};
 use crate::mechanics::arc::Arc;
 use crate::mechanics::impact;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::most_change;
 use crate::numbers::Real;
 use crate::series::extremes::off_chord;
@@ -31,13 +30,13 @@ pub(crate) struct Rules<Q: Coordinates = f64> {
     /// A cheap proof that no guard closes over a step.
     pub stays: Option<fn(&Step<Q>) -> bool>,
     pub guards: &'static [&'static dyn Guard<Q>],
-    /// The dissipators at the reach of a step, if a step moves them.
-    pub moved: fn(&Step<Q>) -> Option<Dissipators>,
+    /// How a step moves what is kept beside the state.
+    pub moved: fn(&Step<Q>) -> Moved<Q>,
 }
 
 impl<Q: Coordinates> Rules<Q> {
     /// A phase in which the base does not move, without guards.
-    pub(super) const RESTING: Rules<Q> = Rules { lasts: None, stays: None, guards: &[], moved: |_| None };
+    pub(super) const RESTING: Rules<Q> = Rules { lasts: None, stays: None, guards: &[], moved: |_| (None, None) };
 
     /// Full contact that is held after too many transitions.
     const HELD: &'static Rules<Q> = &Rules { lasts: Some(Motion::held), ..Rules::RESTING };
@@ -63,15 +62,6 @@ impl<Q: Coordinates> Rules<Q> {
     /// Ground that gives, with a tendon or dissipators, or with points that may yield, or under a base that may slide.
     const ON_GROUND_TIED: &'static Rules<Q> =
         &Rules { guards: &[&Overturning, &Points, &Tied, &Sliding], moved: contacts::moved, ..Rules::RESTING };
-
-    /// At the reach of `step`, the dissipators if it moves them, and how far points have settled for good if one yields.
-    #[inline]
-    pub(crate) fn moved(&self, step: &Step<Q>) -> (Option<Dissipators>, Option<Q::Settled>) {
-        let mut moved = (self.moved)(step);
-        let settled = (step.contact.yields != 0).then(|| contacts::settled(step));
-        settled.iter().for_each(|settled| moved.iter_mut().for_each(|of| contacts::settle(step, settled, of)));
-        (moved, settled)
-    }
 }
 
 /// The phase of `motion` of `structure`; none once the structure has overturned.

@@ -162,7 +162,7 @@ impl<'p, Q: Coordinates> Piece<'p, Q> {
             let (level, side, contact) = (self.level, self.before.phase.side(), self.before.phase.contact());
             let step =
                 Step { level, side, contact, start: &self.whole().step(), arc, reach: tau / arc.span, is_cut: false };
-            let (moved, settled) = watched.moved(&step);
+            let (moved, settled) = (watched.moved)(&step);
             motion.dissipators = moved.unwrap_or(motion.dissipators);
             motion.settled = settled.unwrap_or(motion.settled);
         }

@@ -5,9 +5,13 @@ use crate::levels::level::Level;
 use crate::levels::start::Start;
 use crate::mechanics::arc::Arc;
 use crate::mechanics::lateral::Coordinates;
+use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::state::Side;
 use crate::series::first_crossing::Crossing;
 use serde::{Deserialize, Serialize};
+
+/// At the reach of a step, the dissipators if it moves them, and how far points have settled for good if one yields.
+pub(crate) type Moved<Q> = (Option<Dissipators>, Option<<Q as Coordinates>::Settled>);
 
 /// One expanded step in one phase.
 pub(crate) struct Step<'a, Q: Coordinates = f64> {

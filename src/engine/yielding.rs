@@ -7,11 +7,11 @@
 use crate::engine::guard::{BAND, Guard};
 use crate::engine::motion::Motion;
 use crate::engine::sample::Sample;
-use crate::engine::step::{Branch, Step, see};
+use crate::engine::step::{Branch, Moved, Step, see};
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
 use crate::mechanics::lateral::Coordinates;
-use crate::mechanics::restraint::{Dissipators, dampers, levers};
+use crate::mechanics::restraint::{dampers, levers};
 use crate::mechanics::state::most_change;
 use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{ZERO, evaluate};
@@ -103,13 +103,15 @@ fn least_margin<Q: Coordinates>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
 }
 
 /// The dissipators at the reach of a step, if there are any or a tendon.
-pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Option<Dissipators> {
+pub(crate) fn moved<Q: Coordinates>(&Step { level, side, start, arc, reach, .. }: &Step<Q>) -> Moved<Q> {
     let (base, angles) = (level.structure().base(), level.subject().detail.angles());
+    if !base.is_restrained() {
+        return (None, None);
+    }
     let chord = || angles.chord(evaluate(arc.used(&arc.theta), reach), 0.0).length;
     let power = |(c, rate): (f64, Terms)| c * (product_integral(rate.used(), rate.used(), reach) * arc.span);
-    let stepped =
-        || start.dissipators.stepped(base, |j| levers(base, side)[j] * chord(), dampers(base, angles, arc).map(power));
-    base.is_restrained().then(stepped)
+    let powers = dampers(base, angles, arc).map(power);
+    (Some(start.dissipators.stepped(base, |j| levers(base, side)[j] * chord(), powers)), None)
 }
 
 /// ∫ (Σ a_k σᵏ) (Σ b_k σᵏ) dσ from 0 to `reach`.
